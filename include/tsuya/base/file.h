@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files: bounded reading, atomic writing (temporary, fsync, rename), paths.
+#pragma once
+#include <tsuya/base/status.h>
+#include <stdint.h>
+
+#define TY_PATH_MAX 4096
+
+typedef struct ty_bytes
+{
+    uint8_t* data; // owned, freed with ty_bytes_term; one zero byte follows the content
+    size_t size;
+} ty_bytes;
+
+void ty_bytes_term(ty_bytes* bytes);
+
+// Reads a whole regular file. A file over max_size, a directory, or an unreadable file is TY_BAD_FILE with the reason.
+TY_CHECKED ty_status ty_file_read(const char* path, size_t max_size, ty_bytes* out, ty_error* error);
+
+// An output that is complete or absent: write to .temporary, then commit. A process that ends by itself or by a signal
+// that it handles leaves no temporary behind (ty_atomic_abort_all from an exit path removes what is pending).
+typedef struct ty_atomic_file
+{
+    char path[TY_PATH_MAX];
+    char temporary[TY_PATH_MAX]; // beside path, with the same extension, so that libraries see the right type
+    int slot;                    // in the table of pending files
+} ty_atomic_file;
+
+// Fails early when the folder is missing or not writable or path is a directory. The temporary exists (empty) afterwards.
+TY_CHECKED ty_status ty_atomic_begin(ty_atomic_file* file, const char* path, ty_error* error);
+TY_CHECKED ty_status ty_atomic_commit(ty_atomic_file* file, ty_error* error); // fsync, rename, fsync of the folder
+void ty_atomic_abort(ty_atomic_file* file);                                   // removes the temporary
+void ty_atomic_abort_all(void);                                               // async-signal-safe
+
+TY_CHECKED ty_status ty_file_write(const char* path, const void* bytes, size_t size, ty_error* error); // atomic
+TY_CHECKED ty_status ty_folder_create(const char* path, ty_error* error); // with parents; existing is fine
+
+bool ty_file_exists(const char* path); // a regular file
+bool ty_folder_exists(const char* path);
+const char* ty_path_extension(const char* path);                      // "exr", without the dot; "" if none
+void ty_path_folder(const char* path, char out[TY_PATH_MAX]);         // "." if none
+void ty_path_join(const char* folder, const char* name, char out[TY_PATH_MAX]); // name absolute: name alone
+
+// Runs fn in a child process with limits: for importers of foreign code. What fn writes to output_fd becomes *output
+// (at most max_output bytes). A crash, limit or timeout is TY_BAD_FILE with the reason; a failure of fn brings its
+// ty_error. fn must not touch threads. Memory limits are not applied under AddressSanitizer.
+typedef struct ty_child_def
+{
+    size_t memory_bytes; // address space above the present; 0 = 4 GiB
+    double seconds;      // wall clock; 0 = 60
+    size_t max_output;   // bytes; 0 = 2 GiB
+} ty_child_def;
+typedef ty_status ty_child_fn(const void* context, int output_fd, ty_error* error);
+TY_CHECKED ty_status ty_child_run(const ty_child_def* def, ty_child_fn* fn, const void* context, ty_bytes* output,
+                                  ty_error* error);
+// For fn: writes all bytes to the pipe, handling short writes.
+TY_CHECKED ty_status ty_child_write(int output_fd, const void* bytes, size_t size, ty_error* error);

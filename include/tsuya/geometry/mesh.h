@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Indexed triangle meshes with normals, uv, welded topology, curvature and named vertex attributes.
+#pragma once
+#include <tsuya/base/math.h>
+#include <tsuya/base/memory.h>
+#include <tsuya/base/status.h>
+#include <stdint.h>
+
+typedef struct ty_mesh_attribute
+{
+    char name[32];
+    int components; // 1..4
+    float* values;  // [vertex_count][components]
+} ty_mesh_attribute;
+
+// Arrays are owned and freed by ty_mesh_destroy; optional ones are NULL when absent. Const once in use by the tracer.
+typedef struct ty_mesh
+{
+    uint32_t vertex_count, triangle_count;
+    ty_vec3* positions;       // [vertex_count]
+    ty_vec3* normals;         // [vertex_count], unit, outward
+    ty_vec2* uvs;             // optional
+    uint32_t (*triangles)[3]; // counter-clockwise seen from outside
+    uint32_t* welds;          // [vertex_count] smallest index of the vertices at the same position (optional)
+    float* curvature_1;       // [vertex_count] larger principal curvature, 1/m, convex positive (optional)
+    float* curvature_2;       // smaller
+    ty_vec3* direction_1;     // unit tangent of curvature_1
+    ty_mesh_attribute* attributes;
+    int attribute_count;
+    ty_bounds bounds;
+} ty_mesh;
+
+typedef struct ty_mesh_topology
+{
+    uint32_t welded_vertices, edges, boundary_edges, nonmanifold_edges, misoriented_edges, components;
+    double area;   // m^2
+    double volume; // m^3, signed; positive when closed and outward
+    bool closed;   // no boundary, no non-manifold, no misoriented edge, positive volume
+    bool convex;   // closed, one component, every edge convex within 1e-4 rad
+} ty_mesh_topology;
+
+// Zeroed arrays of positions, normals and triangles. For sizes from input: NULL when memory does not suffice.
+TY_CHECKED ty_mesh* ty_mesh_create(uint32_t vertex_count, uint32_t triangle_count);
+void ty_mesh_destroy(ty_mesh* mesh); // NULL is allowed
+ty_mesh* ty_mesh_copy(const ty_mesh* mesh);
+
+// Finite positions, indices in range, some area: else TY_BAD_FILE naming the first offender (name = the file, for messages).
+TY_CHECKED ty_status ty_mesh_validate(const ty_mesh* mesh, const char* name, ty_error* error);
+void ty_mesh_compute_bounds(ty_mesh* mesh);
+void ty_mesh_compute_welds(ty_mesh* mesh); // exact equality of positions
+// Angle-weighted vertex normals over welded vertices; edges sharper than crease (radians; pi = all smooth) are split:
+// vertices may be added.
+void ty_mesh_compute_normals(ty_mesh* mesh, float crease);
+// Principal curvatures and direction per vertex (Rusinkiewicz 2004 over welded vertices), then `smoothing` Gaussian passes.
+void ty_mesh_compute_curvature(ty_mesh* mesh, int smoothing);
+void ty_mesh_transform(ty_mesh* mesh, const ty_affine* m);
+void ty_mesh_analyse(const ty_mesh* mesh, ty_mesh_topology* out); // needs welds
+
+// Gaussian average of a per-vertex field over the surface: weight exp(-|d|^2 / (2 width^2)) * vertex area, cut at 3 width.
+void ty_mesh_smooth_field(const ty_mesh* mesh, float* field, float width);
+
+// NULL if there is none.
+const ty_mesh_attribute* ty_mesh_find_attribute(const ty_mesh* mesh, const char* name);
+// Adds (or finds) an attribute of zeros; the values are owned by the mesh.
+float* ty_mesh_add_attribute(ty_mesh* mesh, const char* name, int components);

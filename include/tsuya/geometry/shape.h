@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Built-in shapes as meshes. All closed ones are outward and watertight; y is up.
+#pragma once
+#include <tsuya/base/params.h>
+#include <tsuya/geometry/mesh.h>
+
+typedef enum ty_shape_kind
+{
+    TY_SHAPE_SPHERE,    // radius
+    TY_SHAPE_ELLIPSOID, // size = semi-axes
+    TY_SHAPE_BOX,       // size = half extents, rounding = edge radius
+    TY_SHAPE_CYLINDER,  // radius, height, capped, rounding
+    TY_SHAPE_TORUS,     // radius (to the tube's centre), tube
+    TY_SHAPE_PLANE,     // size x, z half extents; open, normal +y
+    TY_SHAPE_DISC,      // radius; open, normal +y
+    TY_SHAPE_BOWL,      // radius (rim, outside), height, thickness, foot radius, foot height, curve: a turned vessel, closed solid
+    TY_SHAPE_DOME,      // radius, height: closed half ellipsoid standing on y = 0
+    TY_SHAPE_SWEEP,     // size: a floor that curves up into a wall behind (photographer's sweep); open
+} ty_shape_kind;
+
+typedef struct ty_shape_def
+{
+    int kind;           // ty_shape_kind
+    float radius;       // m
+    ty_vec3 size;       // m
+    float height;       // m
+    float tube;         // m
+    float thickness;    // m, wall of a bowl
+    float foot_radius;  // m
+    float foot_height;  // m
+    float curve;        // bowl profile: 1 = cone, 2 = parabola, higher = fuller
+    float rounding;     // m
+    int divisions;      // around; the other direction follows the shape, 8..4096
+} ty_shape_def;
+
+ty_shape_def ty_shape_def_default(void);
+const ty_param_table* ty_shape_params(void);
+
+// Welds, normals, uv, bounds and curvature (exact where the shape has a formula) are filled in.
+// Impossible sizes are TY_BAD_INPUT naming the field.
+TY_CHECKED ty_status ty_shape_create(const ty_shape_def* def, ty_mesh** out, ty_error* error);
+
+// Signed distance (negative inside) to the *interior* of a vessel: the space to be filled. For BOWL the hollow below
+// the rim; for the closed solids the solid itself. Exact or a lower bound of the distance inside, 1-Lipschitz.
+float ty_shape_interior_distance(const ty_shape_def* def, ty_vec3 p);

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ray queries. The only door to Embree. A world is built once, then const: any thread may query it.
+#pragma once
+#include <tsuya/geometry/aggregate.h>
+#include <tsuya/geometry/mesh.h>
+
+typedef struct ty_world ty_world; // opaque
+
+#define TY_NONE 0xffffffffu
+
+typedef enum ty_ray_flags
+{
+    TY_RAY_PLAIN = 0,
+    TY_RAY_FRONT_ONLY = 1, // objects marked closed_subsurface are seen from outside only: back-face hits are passed through
+} ty_ray_flags;
+
+typedef struct ty_ray
+{
+    ty_vec3 origin;
+    float t_min;
+    ty_vec3 direction; // unit
+    float t_max;
+    uint32_t flags;         // ty_ray_flags
+    uint32_t skip_object;   // with skip_instance: hits on this instance nearer than skip_distance are passed through
+    uint32_t skip_instance; // TY_NONE = skip nothing
+    float skip_distance;    // TY_FLOAT_MAX = the whole instance
+} ty_ray;
+
+typedef struct ty_hit
+{
+    float t;
+    float u, v; // barycentric weights of vertices 1 and 2
+    uint32_t object, instance, triangle; // instance is the index within the object (0 for a plain object)
+} ty_hit;
+
+typedef enum ty_trace_path
+{
+    TY_TRACE_FAST,      // aggregates as one user geometry over the instance array, ellipsoid test in front
+    TY_TRACE_REFERENCE, // plain Embree instances
+} ty_trace_path;
+
+typedef struct ty_world_def
+{
+    ty_trace_path path;
+    const char* isa; // NULL = the best of this CPU; "avx2", "sse4.2", "avx512" ... pins Embree's kernels
+} ty_world_def;
+
+ty_world_def ty_world_def_default(void);
+TY_CHECKED ty_status ty_world_create(const ty_world_def* def, ty_world** out, ty_error* error);
+void ty_world_destroy(ty_world* world); // NULL is allowed
+
+typedef struct ty_object_flags
+{
+    bool closed_subsurface; // honours TY_RAY_FRONT_ONLY
+    bool camera_visible;    // reserved for visibility by ray kind: set true
+} ty_object_flags;
+
+// Adds a prototype; the mesh is borrowed and must outlive the world. Equal pointers give the same index: its BVH is
+// built once.
+TY_CHECKED ty_status ty_world_add_prototype(ty_world* world, const ty_mesh* mesh, uint32_t* prototype, ty_error* error);
+// A plain object: one prototype under one map. Objects are numbered in order of addition, from 0.
+TY_CHECKED ty_status ty_world_add_object(ty_world* world, uint32_t prototype, const ty_affine* transform,
+                                         ty_object_flags flags, uint32_t* object, ty_error* error);
+// An aggregate under one map; its transforms are composed with it. Borrowed until commit only (arrays are copied).
+TY_CHECKED ty_status ty_world_add_aggregate(ty_world* world, const ty_aggregate* aggregate, const ty_affine* transform,
+                                            ty_object_flags flags, uint32_t* object, ty_error* error);
+// Builds. Deterministic: the same input gives the same tree. After this the world is const.
+TY_CHECKED ty_status ty_world_commit(ty_world* world, ty_error* error);
+
+bool ty_world_intersect(const ty_world* world, const ty_ray* ray, ty_hit* hit); // nearest; false = none, *hit untouched
+bool ty_world_occluded(const ty_world* world, const ty_ray* ray);
+
+// Against one instance alone, world space; skips and flags are ignored. Used for interior rays and probes.
+bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_t instance, ty_vec3 origin,
+                                 ty_vec3 direction, float t_max, ty_hit* hit);
+// The same against a prototype in its own space; direction need not be unit, t in its units.
+bool ty_world_intersect_prototype(const ty_world* world, uint32_t prototype, ty_vec3 origin, ty_vec3 direction,
+                                  float t_max, ty_hit* hit);
+
+typedef struct ty_closest
+{
+    ty_vec3 position;
+    float distance;
+    uint32_t triangle;
+    float u, v;
+} ty_closest;
+
+// Closest point of a prototype within max_distance, in its space; false = none.
+bool ty_world_closest(const ty_world* world, uint32_t prototype, ty_vec3 p, float max_distance, ty_closest* out);
+// Whether p lies inside a closed prototype: majority of three rays' crossing parity.
+bool ty_world_inside(const ty_world* world, uint32_t prototype, ty_vec3 p);
+
+// What a hit refers to.
+const ty_mesh* ty_world_mesh(const ty_world* world, uint32_t object, uint32_t instance);
+uint32_t ty_world_prototype(const ty_world* world, uint32_t object, uint32_t instance);
+const ty_mesh_topology* ty_world_topology(const ty_world* world, uint32_t prototype);
+uint32_t ty_world_prototype_count(const ty_world* world);
+const ty_mesh* ty_world_prototype_mesh(const ty_world* world, uint32_t prototype);
+// Prototype to world, and back.
+const ty_affine* ty_world_to_world(const ty_world* world, uint32_t object, uint32_t instance);
+const ty_affine* ty_world_to_local(const ty_world* world, uint32_t object, uint32_t instance);
+ty_bounds ty_world_bounds(const ty_world* world);
+uint64_t ty_world_memory(const ty_world* world); // bytes, Embree's and ours
+
+// Surface at a hit.
+typedef struct ty_surface_point
+{
+    ty_vec3 position; // on the triangle, by barycentric interpolation (exact to rounding, whatever the ray's length)
+    ty_vec3 ng;       // unit geometric normal, outward (as the triangle winds)
+    ty_vec3 ns;       // unit shading normal, on the same side as ng
+    ty_vec3 dpdu;     // unit tangent along u of the uv map, or along curvature_1, or any; perpendicular to ns
+    ty_vec2 uv;       // (0,0) without uv
+    uint32_t object, instance, triangle;
+    float u, v;       // barycentric
+} ty_surface_point;
+
+void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point* out);
+// A mesh field interpolated at the hit (per-vertex array of the instance's prototype).
+float ty_world_interpolate(const ty_world* world, const ty_surface_point* point, const float* vertex_field);
+
+// An origin for a ray that leaves p towards the side of n, moved off the surface by rounding-error bounds
+// (Waechter & Binder 2019).
+ty_vec3 ty_offset_origin(ty_vec3 p, ty_vec3 n);

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any image file through OpenImageIO, as interleaved floats.
+#pragma once
+#include <tsuya/base/status.h>
+
+typedef struct ty_image
+{
+    int width, height, channels;
+    float* pixels;        // [height][width][channels], top row first; owned
+    bool is_float;        // whether the file held floating point (else integers scaled to 0..1)
+    char color_space[64]; // what the file says of itself, or ""
+} ty_image;
+
+void ty_image_term(ty_image* image);
+
+// Reads EXR of every kind (tiled, multi-part: the first part; DWA), HDR, PNG, JPEG, TIFF... A header whose size is out
+// of proportion to the file, or above 32768 a side, is refused before memory is taken. Alpha as stored.
+TY_CHECKED ty_status ty_image_read(const char* path, ty_image* out, ty_error* error);
+
+// Writes PNG (8 or 16 bit), JPEG or TIFF by extension, atomically; values clamp to 0..1. channels 1, 3 or 4. bits 8 or 16;
+// 8 bit is dithered by nothing: equal input, equal bytes.
+TY_CHECKED ty_status ty_image_write(const char* path, const ty_image* image, int bits, ty_error* error);

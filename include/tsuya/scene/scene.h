@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// What exists: a scene read from YAML, frozen after load.
+#pragma once
+#include <tsuya/base/arena.h>
+#include <tsuya/base/params.h>
+#include <tsuya/base/workers.h>
+#include <tsuya/geometry/trace.h>
+#include <tsuya/image/color.h>
+#include <tsuya/image/texture.h>
+#include <tsuya/shading/material.h>
+
+typedef enum ty_filter_kind
+{
+    TY_FILTER_BOX,
+    TY_FILTER_GAUSSIAN,
+    TY_FILTER_BLACKMAN_HARRIS,
+} ty_filter_kind;
+
+typedef struct ty_film_def
+{
+    int size[2];        // pixels
+    int filter;         // ty_filter_kind
+    float filter_width; // pixels, full width
+    bool half;          // beauty channels as half (else float)
+} ty_film_def;
+
+typedef struct ty_camera_def
+{
+    ty_vec3 position, look_at, up; // m
+    float vfov;                    // radians
+    float f_stop;                  // 0 = pinhole; aperture diameter = focal length / f_stop
+    float film_height;             // m, gives the focal length: height / (2 tan(vfov / 2))
+    float focus_distance;          // m; 0 = the distance to focus_point or look_at
+    ty_vec3 focus_point;           // used when has_focus_point
+    bool has_focus_point;
+    float near_clip;               // m
+} ty_camera_def;
+
+typedef enum ty_integrator_kind
+{
+    TY_INTEGRATOR_PATH,
+    TY_INTEGRATOR_ALBEDO,
+    TY_INTEGRATOR_NORMAL,
+    TY_INTEGRATOR_CURVATURE,
+    TY_INTEGRATOR_AO,
+} ty_integrator_kind;
+
+typedef struct ty_render_def
+{
+    int integrator;      // ty_integrator_kind
+    int samples;         // per pixel
+    int max_depth;       // surface interactions of a path
+    int roulette_depth;  // no Russian roulette before this many interactions
+    ty_seed seed;
+    float ao_distance;       // m
+    float curvature_scale;   // m: curvature * scale is shown as grey around .5
+} ty_render_def;
+
+typedef enum ty_light_kind
+{
+    TY_LIGHT_ENVIRONMENT, // constant radiance, or image (latitude-longitude, y up, rotate about y)
+    TY_LIGHT_RECTANGLE,
+    TY_LIGHT_SPHERE,
+    TY_LIGHT_POINT,
+    TY_LIGHT_DIRECTIONAL,
+} ty_light_kind;
+
+typedef struct ty_light_def
+{
+    int kind;                // ty_light_kind
+    ty_rgb radiance;         // W/(m^2 sr): environment, rectangle, sphere
+    ty_rgb intensity;        // W/sr: point
+    ty_rgb irradiance;       // W/m^2 on a plane facing it: directional
+    ty_vec3 center, target;  // m; a rectangle faces its target; directional: from center towards target
+    ty_vec3 up;              // orientation of a rectangle
+    float size[2];           // m, full width and height
+    float radius;            // m
+    const char* image;       // path
+    const char* color_space; // of the image, NULL = guess
+    float rotate;            // radians about +y
+    bool camera_visible;     // area and environment lights seen by camera rays
+} ty_light_def;
+
+ty_film_def ty_film_def_default(void);
+ty_camera_def ty_camera_def_default(void);
+ty_render_def ty_render_def_default(void);
+ty_light_def ty_light_def_default(void);
+const ty_param_table* ty_film_params(void);
+const ty_param_table* ty_camera_params(void);
+const ty_param_table* ty_render_params(void);
+const ty_param_table* ty_light_params(void);
+
+typedef struct ty_scene_object
+{
+    const char* name;     // as in the file, or "object3"
+    uint32_t material;    // index
+    const float* const* attributes; // [attribute_count] -> [instances] or NULL
+    const uint32_t* ids;            // [instances] from the aggregate file, or NULL
+    uint32_t instance_count;
+} ty_scene_object;
+
+// Frozen: const for the renderer. Owned by its arena and ty_scene_destroy.
+typedef struct ty_scene
+{
+    ty_arena* arena;
+    const char* path;   // of the scene file
+    ty_film_def film;
+    ty_camera_def camera;
+    ty_render_def render;
+    ty_color* color;
+    ty_world* world;
+    ty_scene_object* objects; // by world object index
+    int object_count;
+    ty_material** materials;
+    const char** material_names;
+    int material_count;
+    ty_light_def* lights;
+    ty_texture** light_images; // [light_count], NULL where none
+    int light_count;
+    ty_texture** textures;
+    int texture_count;
+    const char** attribute_names;
+    int attribute_count;
+    ty_depth_field** depth_fields; // by prototype
+    ty_shading_context shading;    // ready for use
+    const char* recipe;    // complete text of the scene: variables, overrides, includes and recipes resolved
+    const char* overrides; // "-D a=b --set c=d", as given; "" if none
+    char hash[33];         // of the recipe and of every file that went in
+    // statistics of loading, seconds and counts
+    double load_seconds, asset_seconds, build_seconds;
+    int assets_made, assets_cached;
+    uint64_t triangle_count, instance_count; // unique triangles; instances
+} ty_scene;
+
+typedef struct ty_scene_options
+{
+    const char* const* sets;      // "path=value"
+    int set_count;
+    const char* const* variables; // "name=value"
+    int variable_count;
+    const char* ocio;             // --ocio or NULL
+    const char* isa;              // --isa or NULL
+    const char* cache_folder;     // NULL = $TSUYA_CACHE, else $XDG_CACHE_HOME/tsuya, else ~/.cache/tsuya
+    bool sandbox;                 // no path outside the scene's folder
+    bool check_only;              // read and verify everything, but make no asset and build no tree
+    ty_trace_path trace_path;
+    ty_workers* workers;          // for generators; NULL = the caller
+} ty_scene_options;
+
+// path: a scene file or a folder with scene.yaml. On failure *out is NULL and errors holds every mistake found.
+TY_CHECKED ty_status ty_scene_load(const char* path, const ty_scene_options* options, ty_scene** out,
+                                   ty_error_list* errors);
+void ty_scene_destroy(ty_scene* scene); // NULL is allowed
+
+// Makes the asset of a recipe file and writes it to output (".glb"), without the cache.
+TY_CHECKED ty_status ty_recipe_make(const char* recipe, const char* output, const ty_scene_options* options,
+                                    ty_error_list* errors);
+
+// Every table there is, for `tsuya params`, the schema and the reference.
+const ty_param_table* const* ty_scene_tables(int* count);
+// Text for `tsuya params [PATH]`, JSON Schema, and the Markdown reference; caller frees with ty_free.
+// NULL when path names nothing (suggestion then holds the nearest name).
+char* ty_params_text(const char* path, char suggestion[64]);
+char* ty_params_schema(void);
+char* ty_params_markdown(void);

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Curvature reflectance: kernels on the sphere, their laws, and the moisture law. For the material, tests and tools.
+#pragma once
+#include <tsuya/base/math.h>
+#include <tsuya/base/moisture.h>
+
+// Poisson kernel parameter t for a white medium: table in ln x of x = curvature * mean free path (Monte Carlo), linear
+// in the log; extended by (4/3) x below and by its last slope above.
+float ty_cdrf_poisson_t(float x);
+// Normalised Gaussian's sigma for a white medium, likewise.
+float ty_cdrf_gaussian_sigma(float x);
+
+// E(theta) / E(lit Lambert point at 0): response of a sphere to one directional light at cos_theta.
+float ty_cdrf_poisson(float t, float cos_theta);            // sum a_l e^(-l t) P_l, integral pi
+float ty_cdrf_gaussian(float sigma, float theta);           // normalised: integral pi
+float ty_cdrf_gaussian_published(float sigma, float theta); // integral I(sigma)
+float ty_cdrf_gaussian_integral(float sigma);               // I(sigma)
+
+// Share of the kernel's integral below the horizon.
+float ty_cdrf_share_below(int kernel, float spread);
+
+typedef struct ty_moisture_optics
+{
+    float mean_free_path; // m
+    float gaussian_sigma; // sigma_0 in m (sigma = sigma_0 * curvature), the seed's linear law
+    float film;           // 0..1 weight of the water film
+    float roughness;      // of the specular coat
+} ty_moisture_optics;
+
+// l(w) = exp(.0736 + .9 ln w) mm for cooked; raw soaked .19 -> .10 mm over w .145 -> .31; mixed in the log by `cooked`.
+// The constants are ours (the paper leaves them out).
+ty_moisture_optics ty_moisture_optics_make(ty_moisture state);

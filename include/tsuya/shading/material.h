@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// How light behaves at a point: materials, their evaluation and sampling.
+#pragma once
+#include <tsuya/base/moisture.h>
+#include <tsuya/base/params.h>
+#include <tsuya/base/rng.h>
+#include <tsuya/base/status.h>
+#include <tsuya/geometry/trace.h>
+#include <tsuya/image/texture.h>
+
+typedef struct ty_material ty_material;       // opaque, const after creation
+typedef struct ty_depth_field ty_depth_field; // opaque: per-vertex depth and curvature of a prototype, for `depth`
+
+// --- definitions: what a scene file says ---
+
+// Names follow OpenPBR Surface.
+typedef struct ty_surface_def
+{
+    ty_input base_color;         // albedo of the diffuse base, or reflectance of the metal
+    ty_input base_metalness;     // 0..1
+    ty_input specular_weight;    // 0..1
+    ty_input specular_color;
+    ty_input specular_roughness; // 0..1; GGX alpha = roughness^2; below .02 it is a mirror
+    ty_input specular_ior;       // 1..3
+    ty_input transmission_weight;
+    ty_input transmission_color; // tint at normal passage of transmission_depth, or per interface when that is 0
+    float transmission_depth;    // m
+    ty_input coat_weight;
+    ty_input coat_roughness;
+    float coat_ior;
+    ty_input emission_luminance; // radiance
+    ty_input emission_color;
+} ty_surface_def;
+
+typedef enum ty_cdrf_kernel
+{
+    TY_CDRF_POISSON,
+    TY_CDRF_GAUSSIAN,
+    TY_CDRF_GAUSSIAN_PUBLISHED,
+} ty_cdrf_kernel;
+
+typedef enum ty_cdrf_evaluate
+{
+    TY_CDRF_DEPTH,
+    TY_CDRF_PROBE,
+    TY_CDRF_LOCAL,
+} ty_cdrf_evaluate;
+
+typedef struct ty_cdrf_def
+{
+    ty_input color;          // fraction of the entered light that leaves again, per channel
+    ty_input moisture;       // wet basis, .05..1
+    float cooked;            // 0..1; < 0: follows from moisture
+    ty_input mean_free_path; // m, transport mean free path; < 0: from the moisture law
+    int kernel;              // ty_cdrf_kernel; `depth` knows poisson alone
+    int evaluate;            // ty_cdrf_evaluate
+    ty_input specular_weight;    // 0 = no coat, the furnace of color 1 then gives exactly 1 as well
+    ty_input specular_roughness; // < 0: from the moisture (a wet film is smoother)
+    float specular_ior;
+} ty_cdrf_def;
+
+ty_surface_def ty_surface_def_default(void);
+ty_cdrf_def ty_cdrf_def_default(void);
+const ty_param_table* ty_surface_params(void); // "material.surface"
+const ty_param_table* ty_cdrf_params(void);    // "material.cdrf"
+
+// Copies def (strings excepted: indices must be resolved). Impossible combinations are TY_BAD_INPUT naming the field.
+TY_CHECKED ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** out, ty_error* error);
+TY_CHECKED ty_status ty_material_create_cdrf(const ty_cdrf_def* def, ty_material** out, ty_error* error);
+void ty_material_destroy(ty_material* material); // NULL is allowed
+
+bool ty_material_is_subsurface(const ty_material* material);  // cdrf: objects get closed_subsurface
+bool ty_material_needs_depth(const ty_material* material);    // its prototypes need a depth field
+bool ty_material_is_emissive(const ty_material* material);
+
+// Rays against the committed world; half a second for a million vertices. Needs welds and curvature on the mesh.
+TY_CHECKED ty_status ty_depth_field_create(const ty_world* world, uint32_t prototype, ty_depth_field** out,
+                                           ty_error* error);
+void ty_depth_field_destroy(ty_depth_field* field); // NULL is allowed
+
+// --- evaluation ---
+
+// What shading needs to know of the scene. Const, shared by all threads.
+typedef struct ty_shading_context
+{
+    const ty_world* world;
+    const ty_texture* const* textures;             // by texture_index
+    const ty_depth_field* const* depth_fields;     // by prototype, NULL entries where not needed
+    const float* const* const* object_attributes;  // [object][attribute_index] -> [instance], NULL where absent
+} ty_shading_context;
+
+// The value of an input at a point: value * (offset + scale * texel or attribute); value alone where neither is present.
+ty_rgb ty_input_color(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point);
+float ty_input_float(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point);
+
+#include <tsuya/shading/bsdf.h>
+
+// Prepares the lobes at a point seen along wo (unit, away from the surface). If the point is seen from behind, opaque
+// materials behave as from the front with the normal turned.
+void ty_material_prepare(const ty_material* material, const ty_shading_context* context, const ty_surface_point* point,
+                         ty_vec3 wo, ty_bsdf* out);
