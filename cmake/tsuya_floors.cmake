@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+# One static library a floor; the libraries behind each door; the warnings that are errors.
+
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(embree 3 REQUIRED)
+pkg_check_modules(ASSIMP REQUIRED IMPORTED_TARGET assimp)
+pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
+pkg_check_modules(OCIO REQUIRED IMPORTED_TARGET OpenColorIO)
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR)
+pkg_check_modules(YAML REQUIRED IMPORTED_TARGET yaml-0.1)
+pkg_check_modules(TINYGLTF REQUIRED IMPORTED_TARGET tinygltf)
+pkg_check_modules(JANSSON REQUIRED IMPORTED_TARGET jansson)
+
+set(tsuya_warnings -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wvla -Wundef -Werror)
+set(tsuya_c_warnings -Wstrict-prototypes -Wmissing-prototypes)
+
+function(tsuya_compile_options target)
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/include)
+    target_compile_definitions(${target} PRIVATE _GNU_SOURCE)
+    target_compile_options(${target} PRIVATE ${tsuya_warnings} $<$<COMPILE_LANGUAGE:C>:${tsuya_c_warnings}>
+                                             -ffp-contract=off -fno-math-errno -fvisibility=hidden)
+    if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+        # No FMA: kernels must give the same bits on every machine.
+        target_compile_options(${target} PRIVATE -march=${TSUYA_ARCH} -mno-fma)
+    endif()
+    if(TSUYA_SANITIZE)
+        target_compile_options(${target} PRIVATE -fsanitize=${TSUYA_SANITIZE} -fno-omit-frame-pointer
+                                                 -fno-sanitize-recover=all)
+        target_link_options(${target} PRIVATE -fsanitize=${TSUYA_SANITIZE})
+    endif()
+endfunction()
+
+# tsuya_floor(name DEPENDS floors... LIBRARIES targets...): library tsuya_<name> of every source below <name>/.
+function(tsuya_floor name)
+    cmake_parse_arguments(floor "" "" "DEPENDS;LIBRARIES" ${ARGN})
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${name}/*.c ${name}/*.cpp)
+    if(NOT sources)
+        add_library(tsuya_${name} INTERFACE)
+        return()
+    endif()
+    add_library(tsuya_${name} STATIC ${sources})
+    tsuya_compile_options(tsuya_${name})
+    target_link_libraries(tsuya_${name} PRIVATE ${floor_LIBRARIES})
+    foreach(dependency ${floor_DEPENDS})
+        target_link_libraries(tsuya_${name} PUBLIC tsuya_${dependency})
+    endforeach()
+endfunction()
