@@ -52,7 +52,7 @@ float ty_sin(float x); // |x| <= 1e4
 float ty_cos(float x); // |x| <= 1e4
 void ty_sincos(float x, float* sine, float* cosine);
 float ty_exp(float x);          // saturates to 0 and FLT_MAX
-float ty_log(float x);          // x > 0; 0 gives -TY_FLOAT_MAX
+float ty_ln(float x);           // natural logarithm, x > 0; 0 gives -TY_FLOAT_MAX
 float ty_pow(float x, float y); // x >= 0; relative error below 1e-5
 float ty_acos(float x);         // clamps to [-1, 1]
 float ty_atan2(float y, float x);

@@ -142,6 +142,7 @@ typedef struct ty_scene_options
     const char* isa;              // --isa or NULL
     const char* cache_folder;     // NULL = $TSUYA_CACHE, else $XDG_CACHE_HOME/tsuya, else ~/.cache/tsuya
     bool sandbox;                 // no path outside the scene's folder
+    bool quick;                   // half size and 16 samples, as overrides after all others
     bool check_only;              // read and verify everything, but make no asset and build no tree
     ty_trace_path trace_path;
     ty_workers* workers;          // for generators; NULL = the caller
@@ -155,6 +156,10 @@ void ty_scene_destroy(ty_scene* scene); // NULL is allowed
 // Makes the asset of a recipe file and writes it to output (".glb"), without the cache.
 TY_CHECKED ty_status ty_recipe_make(const char* recipe, const char* output, const ty_scene_options* options,
                                     ty_error_list* errors);
+
+// The folder of made assets: given (may be NULL), else $TSUYA_CACHE, else $XDG_CACHE_HOME/tsuya, else ~/.cache/tsuya.
+// out has TY_PATH_MAX bytes.
+void ty_scene_cache_folder(const char* given, char* out);
 
 // Every table there is, for `tsuya params`, the schema and the reference.
 const ty_param_table* const* ty_scene_tables(int* count);

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// `tsuya check`: every mistake of a scene, without rendering.
+#include "cli.h"
+#include <stdio.h>
+#include <tsuya/base/log.h>
+#include <tsuya/base/memory.h>
+
+static json_t* errors_json(const ty_error_list* errors)
+{
+    json_t* array = json_array();
+    for (int i = 0; i < errors->count; i++)
+    {
+        const ty_error* error = &errors->items[i];
+        json_array_append_new(array, json_pack("{s:s, s:i, s:i, s:s}", "file", error->file, "line", error->line,
+                                               "column", error->column, "text", error->text));
+    }
+    return array;
+}
+
+static ty_status report(const ty_arguments* arguments, ty_scene* scene, ty_error_list* errors, ty_status status)
+{
+    if (ty_argument_has(arguments, "json"))
+    {
+        json_t* root = json_object();
+        json_object_set_new(root, "ok", json_boolean(status == TY_OK));
+        json_object_set_new(root, "mistakes", errors_json(errors));
+        ty_error_list_term(errors);
+        ty_status printed = ty_json_print(root);
+        return status == TY_OK ? printed : status;
+    }
+    ty_errors_log(errors);
+    if (status == TY_OK)
+    {
+        printf("%s: no mistakes; %d objects, %d materials, %d lights, %dx%d, %d samples\n", scene->path,
+               scene->object_count, scene->material_count, scene->light_count, scene->film.size[0],
+               scene->film.size[1], scene->render.samples);
+        return ty_output_finish();
+    }
+    return status;
+}
+
+static ty_status run(const ty_arguments* arguments)
+{
+    static ty_scene_arguments scene_arguments;
+    ty_status status = ty_scene_arguments_read(arguments, &scene_arguments);
+    if (status != TY_OK)
+    {
+        return status;
+    }
+    scene_arguments.options.check_only = true;
+    ty_scene* scene = NULL;
+    ty_error_list errors = {0};
+    status = ty_scene_load(arguments->positional[0], &scene_arguments.options, &scene, &errors);
+    status = report(arguments, scene, &errors, status);
+    ty_scene_destroy(scene);
+    ty_scene_arguments_term(&scene_arguments);
+    return status;
+}
+
+static const ty_option options[] = {
+    TY_SCENE_OPTIONS,
+    {"json", 0, NULL, "the mistakes as JSON on standard output"},
+};
+
+const ty_command ty_command_check = {
+    "check",
+    "SCENE",
+    "find every mistake of a scene without rendering it",
+    "tsuya check scenes/rice_bowl",
+    1,
+    1,
+    options,
+    TY_PARAM_COUNT(options),
+    run,
+};

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the commands share: options, numbers, results as JSON, signals.
+#pragma once
+#include <jansson.h>
+#include <tsuya/base/status.h>
+#include <tsuya/image/exr.h>
+#include <tsuya/scene/scene.h>
+
+typedef struct ty_option
+{
+    const char* name;  // long, without dashes
+    char short_name;   // 0 = none
+    const char* value; // what stands for the value in help; NULL = a flag
+    const char* help;
+} ty_option;
+
+typedef struct ty_command ty_command;
+
+typedef struct ty_given
+{
+    const ty_option* option;
+    const char* text; // "" for flags
+} ty_given;
+
+// A parsed command line. Texts are borrowed from argv.
+typedef struct ty_arguments
+{
+    const ty_command* command;
+    ty_given given[256];
+    int given_count;
+    const char* positional[256];
+    int positional_count;
+} ty_arguments;
+
+struct ty_command
+{
+    const char* name;
+    const char* usage;   // what follows the name
+    const char* summary; // one line
+    const char* example; // one runnable line
+    int least, most;     // positional arguments
+    const ty_option* options;
+    int option_count;
+    ty_status (*run)(const ty_arguments* arguments);
+};
+
+// On failure the message has been logged.
+TY_CHECKED ty_status ty_arguments_parse(const ty_command* command, int argc, char** argv, ty_arguments* out);
+void ty_command_help(const ty_command* command);
+
+bool ty_argument_has(const ty_arguments* arguments, const char* name);
+const char* ty_argument_text(const ty_arguments* arguments, const char* name, const char* fallback); // the last one
+// Numbers: the option must be given. Logged TY_USAGE with the accepted range when it is no number or outside.
+TY_CHECKED ty_status ty_argument_int(const ty_arguments* arguments, const char* name, long low, long high, long* out);
+TY_CHECKED ty_status ty_argument_float(const ty_arguments* arguments, const char* name, double low, double high,
+                                       double* out);
+// Logs "tsuya COMMAND: text" and returns TY_USAGE.
+ty_status ty_usage(const ty_command* command, const char* format, ...) TY_PRINTF(2, 3);
+
+// The options every command that loads a scene understands, and what they say. Free with ty_scene_arguments_term.
+#define TY_SCENE_OPTIONS                                                                                               \
+    {"define", 'D', "NAME=VALUE", "set a variable of the scene (repeatable)"},                                         \
+        {"set", 0, "PATH=VALUE", "override any parameter, e.g. camera.vfov=20 (repeatable)"},                          \
+        {"ocio", 0, "FILE", "OpenColorIO configuration"},                                                              \
+        {"cache", 0, "FOLDER", "where made assets are kept"},                                                          \
+        {"sandbox", 0, NULL, "allow no file outside the scene's folder"},                                              \
+        {"threads", 't', "N", "worker threads (default: all cores)"}
+
+typedef struct ty_scene_arguments
+{
+    const char* sets[300];
+    const char* variables[256];
+    char texts[16][96]; // for options that are short forms of --set
+    int text_count;
+    ty_scene_options options;
+} ty_scene_arguments;
+
+// Fills options from the arguments; workers are created here (owned by *out).
+TY_CHECKED ty_status ty_scene_arguments_read(const ty_arguments* arguments, ty_scene_arguments* out);
+// A further override, as if --set had been given.
+void ty_scene_arguments_set(ty_scene_arguments* arguments, const char* format, ...) TY_PRINTF(2, 3);
+void ty_scene_arguments_term(ty_scene_arguments* arguments);
+// Loads and reports: on failure all mistakes have been logged and the status is the first one's.
+TY_CHECKED ty_status ty_scene_open(const char* path, const ty_scene_options* options, ty_scene** out);
+
+void ty_errors_log(ty_error_list* errors); // logs and frees
+
+// Prints value as indented JSON on standard output and releases it.
+TY_CHECKED ty_status ty_json_print(json_t* value);
+// Writes it to a file, atomically, and releases it.
+TY_CHECKED ty_status ty_json_write(const char* path, json_t* value);
+// Flushes standard output and says whether everything arrived.
+TY_CHECKED ty_status ty_output_finish(void);
+
+// Develops an EXR's R, G, B (or Y) into image file `output`. Display, view NULL = defaults.
+typedef struct ty_develop_def
+{
+    const char* display;
+    const char* view;
+    const char* ocio;
+    float exposure; // stops
+    int bits;       // 8 or 16
+} ty_develop_def;
+TY_CHECKED ty_status ty_develop(const ty_exr* exr, const ty_develop_def* def, const char* output, ty_error* error);
+
+void ty_signals_install(void);
+
+extern const ty_command ty_command_render, ty_command_develop, ty_command_merge, ty_command_check, ty_command_info,
+    ty_command_params, ty_command_pack, ty_command_doctor;

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// One element of an aggregate: its surface as a closed mesh, and the balls that stand for it in packing and contact.
+#pragma once
+#include <tsuya/base/params.h>
+#include <tsuya/base/rng.h>
+#include <tsuya/base/status.h>
+#include <tsuya/geometry/mesh.h>
+
+enum
+{
+    TY_GRAIN_BALLS = 8,       // per grain: two rows, so that an elliptical section is met
+    TY_GRAIN_MAX_VARIANTS = 64,
+};
+
+typedef enum ty_grain_kind
+{
+    TY_GRAIN_RICE,
+} ty_grain_kind;
+
+typedef struct ty_grain_def
+{
+    int kind;        // ty_grain_kind
+    float length;    // m, along x
+    float width;     // m, along y; <= length
+    float thickness; // m, along z; half the width .. the width
+    float variation; // standard deviation of the three sizes, relative, 0..0.2
+    int variants;    // different meshes, 1..TY_GRAIN_MAX_VARIANTS
+    float notch;     // depth of the germ's dent, of the width, 0..0.3
+    int divisions;   // cells across the width, 4..64; triangles = 4 (2 n d + d^2), n = round(d length / width)
+} ty_grain_def;
+
+ty_grain_def ty_grain_def_default(void); // cooked japonica rice
+const ty_param_table* ty_grain_params(void);
+
+typedef struct ty_ball
+{
+    ty_vec3 center; // m
+    float radius;   // m
+} ty_ball;
+
+// Lengths in metres; the origin is the centre of mass of the solid of even density.
+typedef struct ty_grain
+{
+    ty_mesh* mesh; // owned; closed, outward, with welds, normals, curvature and bounds
+    ty_ball balls[TY_GRAIN_BALLS];
+    float volume;             // m^3, of the mesh
+    float inverse_inertia[6]; // per unit mass, 1/m^2: xx yy zz xy xz yz, body frame
+    float radius;             // m, about the origin, of mesh and balls
+    float width;              // m, of this variant
+    float fit_rms, fit_max;   // m, distance of the mesh without its dent from the union of the balls
+} ty_grain;
+
+// A superellipsoid |x/a|^p + ((y/b)^2 + (z/c)^2)^(p/2) = 1 with taper, bend, twist, longitudinal ridges and the germ's
+// dent; each variant of a seed differs. The caller frees with ty_grain_term. On failure *out is zeroed.
+TY_CHECKED ty_status ty_grain_init(const ty_grain_def* def, ty_seed seed, int variant, ty_grain* out, ty_error* error);
+void ty_grain_term(ty_grain* grain); // a zeroed one is allowed
+
+// Exponent p of the surface above: a little fuller at the ends than an ellipsoid.
+#define TY_GRAIN_EXPONENT 2.4f
+
+// A bell-shaped number, mean 0 and variance 1, within +-2 sqrt(3): the sum of four uniform ones.
+float ty_grain_bell(ty_rng* rng);
