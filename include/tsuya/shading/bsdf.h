@@ -18,28 +18,48 @@ typedef enum ty_bsdf_kind
     TY_BSDF_CDRF_COAT,  // resolved: the specular coat at the entry point
 } ty_bsdf_kind;
 
+// Directional albedo E(mu) of a reflecting layer at the point's roughness: up to four table slices and their weights.
+typedef struct ty_albedo_row
+{
+    const float* slice[4]; // owned by the material
+    float weight[4];
+    int count;     // 0 = the layer reflects nothing
+    float average; // 2 * integral of E(mu) mu
+} ty_albedo_row;
+
 typedef struct ty_bsdf
 {
     ty_bsdf_kind kind;
     const struct ty_material* material;
     ty_surface_point point; // where light is gathered; moves to the exit point on resolve
-    ty_frame frame;         // shading frame there, n on wo's side
+    ty_frame frame;         // shading frame there, n on wo's side (CDRF_EXIT: outward)
     ty_vec3 wo;
-    ty_rgb emission;        // leaving along wo
-    bool entering;          // wo is outside the surface
-    bool convex;            // the instance is convex: rays that leave it cannot meet it again
-    // parameters at the point, meaning by kind
-    ty_rgb color;           // diffuse albedo or C
-    ty_rgb specular_tint;   // metal reflectance or specular colour
-    ty_rgb transmission;    // tint
-    float metalness, specular_weight, alpha, eta, transmission_weight;
-    float coat_weight, coat_alpha, coat_eta;
-    float spread;           // sigma or t of the kernel
-    float curvature;        // 1/m, in world units
-    float mean_free_path;   // m
-    float lobe_probability[4];
+    ty_rgb emission; // leaving along wo
+    bool entering;   // wo is outside the surface
+    bool convex;     // the instance is convex: rays that leave it cannot meet it again
+    bool inside;     // surface: wo is within a transmitting body
+
+    // Parameters at the point, meaning by kind.
+    ty_rgb color;         // base color or C
+    ty_rgb specular_tint; // specular color
+    ty_rgb transmission;  // factor for one crossing
+    ty_rgb absorption;    // 1/m, of the medium behind the surface
+    float metalness, specular_weight, alpha, transmission_weight;
+    float eta;                   // refractive index beyond the surface over that on wo's side
+    float coat_weight;           // surface: of the coat; cdrf: of the specular reflection
+    float coat_alpha, coat_eta;  // alpha 0 = mirror
+    ty_albedo_row specular_row;  // E of the dielectric specular
+    ty_albedo_row coat_row;      // E of the coat
+    float lobe_probability[4];   // surface: coat, specular, diffuse, transmission; local: coat, cosine, uniform
+
+    // cdrf
+    float mean_free_path; // m, world
+    float sigma_slope;    // m; > 0: sigma = sigma_slope * curvature instead of the white-material law
+    float curvature;      // 1/m, mean curvature in world units
+    float second_form[3]; // local: II(t,t), II(t,b), II(b,b) in the frame, 1/m, convex positive
 } ty_bsdf;
 
+// Radiance is carried divided by the squared refractive index of its medium, so no factor appears at interfaces.
 typedef struct ty_bsdf_sample
 {
     ty_vec3 wi;    // unit, away from the surface
@@ -59,6 +79,9 @@ bool ty_bsdf_is_delta(const ty_bsdf* bsdf);                            // light 
 ty_rgb ty_bsdf_eval(const ty_bsdf* bsdf, ty_vec3 wi, float* pdf);      // f |cos|, and the pdf sample would have
 bool ty_bsdf_sample_wi(const ty_bsdf* bsdf, float u_lobe, ty_vec2 u, ty_bsdf_sample* out); // false = absorbed
 ty_rgb ty_bsdf_albedo(const ty_bsdf* bsdf);                            // for the albedo AOV, about 0..1
+// 1/m, of the medium behind a transmitting surface; zero otherwise. A path that arrives from within (entering is false)
+// has crossed it: multiply by exp(-absorption * distance).
+ty_rgb ty_bsdf_absorption(const ty_bsdf* bsdf);
 
 // Sets origin, direction, t_min, t_max = TY_FLOAT_MAX, flags and skips for a ray that leaves towards wi.
 // u: one number for the randomised own-shadow distance of `local` on non-convex instances.

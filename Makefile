@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+# The front door. `make demo` and `make test` install what is missing (they say so first); `make build` installs nothing.
+.PHONY: build demo test setup mutations fuzz bench format check clean
+
+build:
+	@.ci/build release
+
+setup:
+	@.ci/setup build
+
+demo: setup
+	@.ci/demo
+
+test: setup
+	@.ci/build release
+	@.ci/test release
+
+mutations: build
+	@tests/mutations/run
+
+fuzz:
+	@.ci/fuzz 60
+
+bench: build
+	@bench/run
+
+format:
+	@git ls-files '*.c' '*.h' '*.cpp' | xargs clang-format -i
+
+check:
+	@.ci/check
+
+clean:
+	rm -rf build out

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+# One scene, one set of bytes: whatever the threads, the split into parts, or the second run.
+cat >scene.yaml <<'Y'
+tsuya: 1
+film: { size: [61, 37] }
+render: { samples: 64, seed: 3 }
+camera: { position: [0, 0.05, 0.12], look_at: [0, 0, 0], vfov: 40 }
+assets:
+  ball: { shape: sphere, radius: 0.01, divisions: 32 }
+  floor: { shape: plane, size: [0.1, 0, 0.1] }
+materials:
+  skin: { model: cdrf, color: [0.8, 0.7, 0.6], mean_free_path: 1.5 }
+  glass: { model: surface, transmission_weight: 1, specular_roughness: 0.2 }
+  grey: { model: surface, base_color: 0.5 }
+objects:
+  - { mesh: ball, material: skin, translate: [-0.012, 0.01, 0] }
+  - { mesh: ball, material: glass, translate: [0.012, 0.01, 0] }
+  - { mesh: floor, material: grey }
+lights:
+  - { type: environment, radiance: 0.3 }
+  - { type: rectangle, center: [-0.1, 0.1, 0], target: [0, 0, 0], size: [0.05, 0.05], radiance: 10 }
+Y
+for threads in 1 2 3; do
+    expect 0 "$tsuya" render scene.yaml -o "t$threads.exr" --threads $threads --progress none
+done
+same t1.exr t2.exr
+same t1.exr t3.exr
+expect 0 "$tsuya" render scene.yaml -o a.exr --samples 0-31 --threads 2
+expect 0 "$tsuya" render scene.yaml -o b.exr --samples 32-63 --threads 1
+expect 0 "$tsuya" merge b.exr a.exr -o merged.exr
+same t1.exr merged.exr
+expect 0 "$tsuya" render scene.yaml -o whole.exr --samples 0-63
+same t1.exr whole.exr
+
+# A part of a part: 0-15 and 16-31 join to the same part as 0-31.
+expect 0 "$tsuya" render scene.yaml -o c.exr --samples 0-15
+expect 0 "$tsuya" render scene.yaml -o d.exr --samples 16-31
+expect 0 "$tsuya" merge c.exr d.exr -o cd.exr
+same a.exr cd.exr
+
+# What cannot be joined says why.
+expect 4 "$tsuya" merge a.exr a.exr -o bad.exr
+says "0-31"
+expect 4 "$tsuya" merge a.exr t1.exr -o bad.exr
+expect 0 "$tsuya" render scene.yaml -o other.exr --samples 32-63 --seed 4
+expect 4 "$tsuya" merge a.exr other.exr -o bad.exr
+says "other.exr"
+absent bad.exr
+
+# The picture holds its scene, and that scene makes the picture.
+expect 0 "$tsuya" info t1.exr --recipe
+cp out.txt again.yaml
+expect 0 "$tsuya" render again.yaml -o again.exr
+same t1.exr again.exr
+expect 0 "$tsuya" info t1.exr --json
+prints '"tsuya/samples": "0-63"'
