@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Integrators for looking at things: what the camera sees first, as colour.
+#include "integrator.h"
+
+void ty_integrator_record(const ty_integrator* in, const ty_bsdf* bsdf, ty_film_sample* out)
+{
+    const ty_surface_point* point = &bsdf->point;
+    out->hit = true;
+    out->albedo = ty_bsdf_albedo(bsdf);
+    out->normal = bsdf->frame.n;
+    out->position = point->position;
+    out->depth = ty_camera_depth(&in->camera, point->position);
+    out->instance = in->first_instance[point->object] + point->instance;
+}
+
+// Mean curvature of the mesh, 1/m in the world; 0 where the mesh has none.
+static float mean_curvature(const ty_world* world, const ty_surface_point* point)
+{
+    const ty_mesh* mesh = ty_world_mesh(world, point->object, point->instance);
+    if (!mesh->curvature_1 || !mesh->curvature_2)
+        return 0.0f;
+    float sum =
+        ty_world_interpolate(world, point, mesh->curvature_1) + ty_world_interpolate(world, point, mesh->curvature_2);
+    // Stretched instances are taken at the mean of their scale: cube root of the volume ratio.
+    float volume = fabsf(ty_affine_determinant(ty_world_to_world(world, point->object, point->instance)));
+    return 0.5f * sum / ty_pow(volume, 1.0f / 3.0f);
+}
+
+static float ambient_occlusion(const ty_integrator* in, const ty_sampler* sampler, const ty_bsdf* bsdf,
+                               ty_counters* counters)
+{
+    float u[4];
+    ty_sampler_4d(sampler, ty_group_scatter(0), u);
+    ty_vec3 wi = ty_to_world(bsdf->frame, ty_sample_cosine((ty_vec2){u[0], u[1]}));
+    ty_vec3 ng = ty_dot(bsdf->point.ng, bsdf->wo) < 0.0f ? ty_neg(bsdf->point.ng) : bsdf->point.ng;
+    if (!(ty_dot(wi, ng) > 0.0f))
+        return 0.0f;
+    ty_ray ray = {.origin = ty_offset_origin(bsdf->point.position, ng),
+                  .direction = wi,
+                  .t_max = in->scene->render.ao_distance,
+                  .skip_object = TY_NONE,
+                  .skip_instance = TY_NONE};
+    counters->shadow_rays++;
+    return ty_world_occluded(in->scene->world, &ray) ? 0.0f : 1.0f;
+}
+
+static ty_rgb shown(const ty_integrator* in, const ty_sampler* sampler, const ty_bsdf* bsdf, ty_counters* counters)
+{
+    const ty_scene* scene = in->scene;
+    ty_vec3 n = bsdf->frame.n;
+    switch ((ty_integrator_kind)scene->render.integrator)
+    {
+    case TY_INTEGRATOR_ALBEDO:
+        return ty_bsdf_albedo(bsdf);
+    case TY_INTEGRATOR_NORMAL:
+        return (ty_rgb){0.5f + 0.5f * n.x, 0.5f + 0.5f * n.y, 0.5f + 0.5f * n.z};
+    case TY_INTEGRATOR_CURVATURE:
+        return ty_rgb_grey(0.5f + mean_curvature(scene->world, &bsdf->point) * scene->render.curvature_scale);
+    case TY_INTEGRATOR_AO:
+        return ty_rgb_grey(ambient_occlusion(in, sampler, bsdf, counters));
+    case TY_INTEGRATOR_PATH:
+        break;
+    }
+    return (ty_rgb){0};
+}
+
+void ty_debug_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray ray, ty_counters* counters,
+                     ty_film_sample* out)
+{
+    const ty_scene* scene = in->scene;
+    ty_hit hit;
+    if (!ty_world_intersect(scene->world, &ray, &hit))
+        return;
+    ty_surface_point point;
+    ty_bsdf bsdf;
+    ty_world_surface(scene->world, &hit, &point);
+    ty_material_prepare(scene->materials[scene->objects[hit.object].material], &scene->shading, &point,
+                        ty_neg(ray.direction), &bsdf);
+    counters->path_vertices++;
+    out->covered = true;
+    ty_integrator_record(in, &bsdf, out);
+    out->radiance = shown(in, sampler, &bsdf, counters);
+}

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sums per pixel in fixed point.
+#include "film.h"
+#include "sampler.h"
+#include <tsuya/base/memory.h>
+
+static ty_status check_setup(const ty_film_setup* setup, ty_error* error)
+{
+    const int *size = setup->size, *crop = setup->crop;
+    if (size[0] < 1 || size[1] < 1)
+        return ty_error_set(error, TY_USAGE, "film size %d x %d: both must be at least 1", size[0], size[1]);
+    if (crop[0] < 0 || crop[1] < 0 || crop[2] < crop[0] || crop[3] < crop[1] || crop[2] >= size[0] ||
+        crop[3] >= size[1])
+        return ty_error_set(error, TY_USAGE, "crop %d,%d,%d,%d is not inside the picture 0,0,%d,%d", crop[0], crop[1],
+                            crop[2], crop[3], size[0] - 1, size[1] - 1);
+    if (setup->sample_begin < 0 || setup->sample_end <= setup->sample_begin ||
+        setup->sample_end > TY_SAMPLER_MAX_SAMPLES)
+        return ty_error_set(error, TY_USAGE, "samples %d-%d: expected a range within 0-%d", setup->sample_begin,
+                            setup->sample_end - 1, TY_SAMPLER_MAX_SAMPLES - 1);
+    return TY_OK;
+}
+
+ty_status ty_film_create(const ty_film_setup* setup, ty_film** out, ty_error* error)
+{
+    *out = NULL;
+    ty_status status = check_setup(setup, error);
+    if (status)
+        return status;
+    ty_film* film = TY_ALLOC(ty_film, 1);
+    film->setup = *setup;
+    film->width = setup->crop[2] - setup->crop[0] + 1;
+    film->height = setup->crop[3] - setup->crop[1] + 1;
+    size_t count = (size_t)film->width * (size_t)film->height;
+    unsigned first = TY_AOV_Z | TY_AOV_P | TY_AOV_INSTANCE;
+    film->beauty = TY_TRY_ALLOC(ty_plane_beauty, count);
+    film->moments = setup->aovs & TY_AOV_VARIANCE ? TY_TRY_ALLOC(ty_plane_moments, count) : NULL;
+    film->normal = setup->aovs & TY_AOV_N ? TY_TRY_ALLOC(ty_plane_vector, count) : NULL;
+    film->albedo = setup->aovs & TY_AOV_ALBEDO ? TY_TRY_ALLOC(ty_plane_vector, count) : NULL;
+    film->first = setup->aovs & first ? TY_TRY_ALLOC(ty_plane_first, count) : NULL;
+    if (!film->beauty || (setup->aovs & TY_AOV_VARIANCE && !film->moments) ||
+        (setup->aovs & TY_AOV_N && !film->normal) || (setup->aovs & TY_AOV_ALBEDO && !film->albedo) ||
+        (setup->aovs & first && !film->first))
+    {
+        ty_film_destroy(film);
+        return ty_error_set(error, TY_NO_MEMORY, "no memory for a film of %d x %d pixels", setup->size[0],
+                            setup->size[1]);
+    }
+    for (size_t i = 0; film->first && i < count; ++i)
+        film->first[i] = (ty_plane_first){.sample = TY_FILM_NO_SAMPLE, .depth = TY_FILM_Z_NONE};
+    *out = film;
+    return TY_OK;
+}
+
+void ty_film_destroy(ty_film* film)
+{
+    if (!film)
+        return;
+    ty_free(film->beauty);
+    ty_free(film->moments);
+    ty_free(film->normal);
+    ty_free(film->albedo);
+    ty_free(film->first);
+    ty_free(film);
+}
+
+ty_pixel_sums ty_pixel_sums_make(void)
+{
+    return (ty_pixel_sums){.first_sample = TY_FILM_NO_SAMPLE, .first_depth = TY_FILM_Z_NONE};
+}
+
+// Nearest multiple of 2^-30, ties to even; clamped, which the caller may want to know.
+static inline int64_t fixed_from_float(float value, bool* clamped)
+{
+    double scaled = (double)value * TY_FILM_SCALE;
+    if (scaled > (double)TY_FILM_LIMIT || scaled < -(double)TY_FILM_LIMIT)
+    {
+        *clamped = true;
+        return scaled > 0.0 ? TY_FILM_LIMIT : -TY_FILM_LIMIT;
+    }
+    return __builtin_llrint(scaled);
+}
+
+static void add_first(ty_pixel_sums* sums, const ty_film_sample* sample, uint32_t index)
+{
+    if (index >= sums->first_sample)
+        return;
+    sums->first_sample = index;
+    sums->first_instance = sample->instance;
+    sums->first_position = sample->position;
+    sums->first_depth = sample->depth;
+}
+
+static void add_vector(uint64_t sum[3], float x, float y, float z)
+{
+    bool clamped = false;
+    sum[0] += (uint64_t)fixed_from_float(x, &clamped);
+    sum[1] += (uint64_t)fixed_from_float(y, &clamped);
+    sum[2] += (uint64_t)fixed_from_float(z, &clamped);
+}
+
+static bool is_finite(const ty_film_sample* s)
+{
+    return ty_rgb_is_finite(s->radiance) && (!s->hit || (ty_rgb_is_finite(s->albedo) && ty_is_finite3(s->normal) &&
+                                                         ty_is_finite3(s->position) && isfinite(s->depth)));
+}
+
+ty_sample_fate ty_pixel_sums_add(ty_pixel_sums* sums, const ty_film_sample* s, uint32_t index)
+{
+    sums->samples++;
+    if (!is_finite(s))
+        return TY_SAMPLE_DROPPED;
+    sums->covered += s->covered;
+    if (s->hit)
+    {
+        add_first(sums, s, index);
+        add_vector(sums->normal, s->normal.x, s->normal.y, s->normal.z);
+        add_vector(sums->albedo, s->albedo.r, s->albedo.g, s->albedo.b);
+    }
+    bool clamped = false, luminance_clamped = false;
+    sums->radiance[0] += (uint64_t)fixed_from_float(s->radiance.r, &clamped);
+    sums->radiance[1] += (uint64_t)fixed_from_float(s->radiance.g, &clamped);
+    sums->radiance[2] += (uint64_t)fixed_from_float(s->radiance.b, &clamped);
+    int64_t y = fixed_from_float(ty_luminance(s->radiance), &luminance_clamped);
+    uint64_t magnitude = (uint64_t)(y < 0 ? -y : y);
+    sums->luminance += (uint64_t)y;
+    sums->luminance_sqr += (ty_u128)magnitude * magnitude;
+    return clamped ? TY_SAMPLE_SATURATED : TY_SAMPLE_GOOD;
+}
+
+static void commit_vector(ty_plane_vector* plane, size_t i, const uint64_t sum[3])
+{
+    for (int c = 0; plane && c < 3; ++c)
+        plane[i].sum[c] += sum[c];
+}
+
+void ty_film_commit(ty_film* film, int x, int y, const ty_pixel_sums* sums)
+{
+    size_t i = ty_film_index(film, x, y);
+    for (int c = 0; c < 3; ++c)
+        film->beauty[i].radiance[c] += sums->radiance[c];
+    film->beauty[i].samples += sums->samples;
+    film->beauty[i].covered += sums->covered;
+    commit_vector(film->normal, i, sums->normal);
+    commit_vector(film->albedo, i, sums->albedo);
+    if (film->moments)
+    {
+        film->moments[i].luminance += sums->luminance;
+        film->moments[i].luminance_sqr += sums->luminance_sqr;
+    }
+    if (film->first && sums->first_sample < film->first[i].sample)
+        film->first[i] =
+            (ty_plane_first){sums->first_sample, sums->first_instance, sums->first_position, sums->first_depth};
+}
+
+ty_pixel_sums ty_film_pixel(const ty_film* film, int x, int y)
+{
+    size_t i = ty_film_index(film, x, y);
+    ty_pixel_sums sums = ty_pixel_sums_make();
+    sums.samples = film->beauty[i].samples;
+    sums.covered = film->beauty[i].covered;
+    for (int c = 0; c < 3; ++c)
+    {
+        sums.radiance[c] = film->beauty[i].radiance[c];
+        sums.normal[c] = film->normal ? film->normal[i].sum[c] : 0;
+        sums.albedo[c] = film->albedo ? film->albedo[i].sum[c] : 0;
+    }
+    if (film->moments)
+    {
+        sums.luminance = film->moments[i].luminance;
+        sums.luminance_sqr = film->moments[i].luminance_sqr;
+    }
+    if (film->first)
+    {
+        sums.first_sample = film->first[i].sample;
+        sums.first_instance = film->first[i].instance;
+        sums.first_position = film->first[i].position;
+        sums.first_depth = film->first[i].depth;
+    }
+    return sums;
+}
+
+float ty_film_variance(const ty_pixel_sums* sums)
+{
+    uint32_t n = sums->samples;
+    if (n < 2)
+        return 0.0f;
+    int64_t sum = (int64_t)sums->luminance;
+    uint64_t magnitude = sum < 0 ? 0u - (uint64_t)sum : (uint64_t)sum;
+    // n * sum of squares - square of the sum, exactly: n <= 2^16 and terms below 2^94 fit into 128 bits.
+    ty_u128 spread = n * sums->luminance_sqr - (ty_u128)magnitude * magnitude;
+    double squared_scale = TY_FILM_SCALE * TY_FILM_SCALE, count = n;
+    return (float)((double)spread / squared_scale / (count * count * (count - 1.0)));
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sobol' with hash-based Owen scrambling and an index shuffled per group (Burley 2020, "Practical hash-based Owen
+// scrambling"), all on reversed bits: Owen's nested permutation is then a hash whose bits depend on lower bits alone.
+#include "sampler.h"
+
+// Direction numbers of Joe and Kuo 2008 ("new-joe-kuo-6"), dimensions 2 to 4.
+static const struct
+{
+    int degree;
+    uint32_t coefficients;
+    uint32_t m[3];
+} polynomials[3] = {{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}};
+
+static uint32_t reverse_bits(uint32_t x)
+{
+    x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+    x = (x >> 8 & 0x00ff00ffu) | (x & 0x00ff00ffu) << 8;
+    return x >> 16 | x << 16;
+}
+
+// Columns of the generator matrix, first digit in the most significant bit.
+static void direction_numbers(int dimension, uint32_t v[16])
+{
+    for (int i = 0; i < 16; ++i)
+    {
+        if (dimension == 0)
+        {
+            v[i] = 1u << (31 - i);
+            continue;
+        }
+        int degree = polynomials[dimension - 1].degree;
+        if (i < degree)
+        {
+            v[i] = polynomials[dimension - 1].m[i] << (31 - i);
+            continue;
+        }
+        v[i] = v[i - degree] ^ v[i - degree] >> degree;
+        for (int k = 1; k < degree; ++k)
+            if (polynomials[dimension - 1].coefficients >> (degree - 1 - k) & 1u)
+                v[i] ^= v[i - k];
+    }
+}
+
+void ty_sobol_init(ty_sobol* sobol)
+{
+    for (int d = 0; d < 4; ++d)
+    {
+        uint32_t v[16];
+        direction_numbers(d, v);
+        for (int half = 0; half < 2; ++half)
+            for (uint32_t byte = 0; byte < 256; ++byte)
+            {
+                uint32_t point = 0;
+                for (int bit = 0; bit < 8; ++bit) // the byte is reversed: its top bit is the lowest of the index
+                    if (byte >> (7 - bit) & 1u)
+                        point ^= v[8 * half + bit];
+                sobol->points[half][byte][d] = reverse_bits(point);
+            }
+    }
+}
+
+ty_sampler ty_sampler_make(const ty_sobol* sobol, ty_seed seed, int x, int y, uint32_t sample)
+{
+    uint64_t pixel = (uint64_t)(uint32_t)y << 32 | (uint32_t)x;
+    uint64_t key = ty_mix64(ty_mix64(seed.value + 0x9e3779b97f4a7c15ull) ^ (pixel + 0xd1b54a32d192ed03ull));
+    return (ty_sampler){sobol, key, reverse_bits(sample), seed, pixel, sample};
+}
+
+// Laine and Karras 2011 in the constants of Vegdahl 2021 ("Building a better LK hash"): a nested uniform scramble of
+// the reversed bits.
+static inline uint32_t scramble_reversed(uint32_t x, uint32_t seed)
+{
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= seed >> 16 | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+}
+
+// The point of a group, before its scrambling, and the seeds of that.
+static inline void group_point(const ty_sampler* s, uint32_t group, uint32_t* restrict x, uint32_t* restrict seed)
+{
+    uint64_t key = ty_mix64(s->key + 0x9e3779b97f4a7c15ull * (group + 1u));
+    uint32_t index = scramble_reversed(s->index_reversed, (uint32_t)key);
+    const uint32_t* low = s->sobol->points[0][index >> 24];
+    const uint32_t* high = s->sobol->points[1][index >> 16 & 255u];
+    for (uint32_t d = 0; d < 4; ++d)
+    {
+        x[d] = low[d] ^ high[d];
+        seed[d] = (uint32_t)(key >> 32) + d * 0x9e3779b9u;
+    }
+}
+
+void ty_sampler_4d(const ty_sampler* sampler, uint32_t group, float u[4])
+{
+    uint32_t x[4], seed[4];
+    group_point(sampler, group, x, seed);
+    for (int d = 0; d < 4; ++d)
+        u[d] = (float)(int32_t)(reverse_bits(scramble_reversed(x[d], ty_mix32(seed[d]))) >> 8) * 0x1p-24f;
+}
+
+void ty_sampler_8d(const ty_sampler* sampler, uint32_t group, float u[8])
+{
+    uint32_t x[8], seed[8];
+    group_point(sampler, group, x, seed);
+    group_point(sampler, group + 1u, x + 4, seed + 4);
+    for (int d = 0; d < 8; ++d)
+        u[d] = (float)(int32_t)(reverse_bits(scramble_reversed(x[d], ty_mix32(seed[d]))) >> 8) * 0x1p-24f;
+}
