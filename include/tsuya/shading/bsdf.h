@@ -45,12 +45,12 @@ typedef struct ty_bsdf
     ty_rgb transmission;  // factor for one crossing
     ty_rgb absorption;    // 1/m, of the medium behind the surface
     float metalness, specular_weight, alpha, transmission_weight;
-    float eta;                   // refractive index beyond the surface over that on wo's side
-    float coat_weight;           // surface: of the coat; cdrf: of the specular reflection
-    float coat_alpha, coat_eta;  // alpha 0 = mirror
-    ty_albedo_row specular_row;  // E of the dielectric specular
-    ty_albedo_row coat_row;      // E of the coat
-    float lobe_probability[4];   // surface: coat, specular, diffuse, transmission; local: coat, cosine, uniform
+    float eta;                  // refractive index beyond the surface over that on wo's side
+    float coat_weight;          // surface: of the coat; cdrf: of the specular reflection
+    float coat_alpha, coat_eta; // alpha 0 = mirror
+    ty_albedo_row specular_row; // E of the dielectric specular
+    ty_albedo_row coat_row;     // E of the coat
+    float lobe_probability[4];  // surface: coat, specular, diffuse, transmission; local: coat, cosine, uniform
 
     // cdrf
     float mean_free_path; // m, world
@@ -75,10 +75,10 @@ typedef struct ty_bsdf_sample
 bool ty_bsdf_resolve(ty_bsdf* bsdf, const struct ty_shading_context* context, const float u[4], ty_rng* extra,
                      ty_rgb* weight);
 
-bool ty_bsdf_is_delta(const ty_bsdf* bsdf);                            // light sampling is pointless
-ty_rgb ty_bsdf_eval(const ty_bsdf* bsdf, ty_vec3 wi, float* pdf);      // f |cos|, and the pdf sample would have
+bool ty_bsdf_is_delta(const ty_bsdf* bsdf);                       // light sampling is pointless
+ty_rgb ty_bsdf_eval(const ty_bsdf* bsdf, ty_vec3 wi, float* pdf); // f |cos|, and the pdf sample would have
 bool ty_bsdf_sample_wi(const ty_bsdf* bsdf, float u_lobe, ty_vec2 u, ty_bsdf_sample* out); // false = absorbed
-ty_rgb ty_bsdf_albedo(const ty_bsdf* bsdf);                            // for the albedo AOV, about 0..1
+ty_rgb ty_bsdf_albedo(const ty_bsdf* bsdf); // for the albedo AOV, about 0..1
 // 1/m, of the medium behind a transmitting surface; zero otherwise. A path that arrives from within (entering is false)
 // has crossed it: multiply by exp(-absorption * distance).
 ty_rgb ty_bsdf_absorption(const ty_bsdf* bsdf);

@@ -16,9 +16,9 @@ typedef struct ty_depth_field ty_depth_field; // opaque: per-vertex depth and cu
 // Names follow OpenPBR Surface.
 typedef struct ty_surface_def
 {
-    ty_input base_color;         // albedo of the diffuse base, or reflectance of the metal
-    ty_input base_metalness;     // 0..1
-    ty_input specular_weight;    // 0..1
+    ty_input base_color;      // albedo of the diffuse base, or reflectance of the metal
+    ty_input base_metalness;  // 0..1
+    ty_input specular_weight; // 0..1
     ty_input specular_color;
     ty_input specular_roughness; // 0..1; GGX alpha = roughness^2; below .02 it is a mirror
     ty_input specular_ior;       // 1..3
@@ -48,12 +48,12 @@ typedef enum ty_cdrf_evaluate
 
 typedef struct ty_cdrf_def
 {
-    ty_input color;          // fraction of the entered light that leaves again, per channel
-    ty_input moisture;       // wet basis, .05..1
-    float cooked;            // 0..1; < 0: follows from moisture
-    ty_input mean_free_path; // m, transport mean free path; < 0: from the moisture law
-    int kernel;              // ty_cdrf_kernel; `depth` knows poisson alone
-    int evaluate;            // ty_cdrf_evaluate
+    ty_input color;              // fraction of the entered light that leaves again, per channel
+    ty_input moisture;           // wet basis, .05..1
+    float cooked;                // 0..1; < 0: follows from moisture
+    ty_input mean_free_path;     // m, transport mean free path; < 0: from the moisture law
+    int kernel;                  // ty_cdrf_kernel; `depth` knows poisson alone
+    int evaluate;                // ty_cdrf_evaluate
     ty_input specular_weight;    // 0 = no coat, the furnace of color 1 then gives exactly 1 as well
     ty_input specular_roughness; // < 0: from the moisture (a wet film is smoother)
     float specular_ior;
@@ -69,8 +69,8 @@ TY_CHECKED ty_status ty_material_create_surface(const ty_surface_def* def, ty_ma
 TY_CHECKED ty_status ty_material_create_cdrf(const ty_cdrf_def* def, ty_material** out, ty_error* error);
 void ty_material_destroy(ty_material* material); // NULL is allowed
 
-bool ty_material_is_subsurface(const ty_material* material);  // cdrf: objects get closed_subsurface
-bool ty_material_needs_depth(const ty_material* material);    // its prototypes need a depth field
+bool ty_material_is_subsurface(const ty_material* material); // cdrf: objects get closed_subsurface
+bool ty_material_needs_depth(const ty_material* material);   // its prototypes need a depth field
 bool ty_material_is_emissive(const ty_material* material);
 
 // Rays against the committed world; half a second for a million vertices. Needs welds and curvature on the mesh.
@@ -84,12 +84,13 @@ void ty_depth_field_destroy(ty_depth_field* field); // NULL is allowed
 typedef struct ty_shading_context
 {
     const ty_world* world;
-    const ty_texture* const* textures;             // by texture_index
-    const ty_depth_field* const* depth_fields;     // by prototype, NULL entries where not needed
-    const float* const* const* object_attributes;  // [object][attribute_index] -> [instance], NULL where absent
+    const ty_texture* const* textures;            // by texture_index
+    const ty_depth_field* const* depth_fields;    // by prototype, NULL entries where not needed
+    const float* const* const* object_attributes; // [object][attribute_index] -> [instance], NULL where absent
 } ty_shading_context;
 
-// The value of an input at a point: value * (offset + scale * texel or attribute); value alone where neither is present.
+// The value of an input at a point: value * (offset + scale * texel or attribute); value alone where neither is
+// present.
 ty_rgb ty_input_color(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point);
 float ty_input_float(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point);
 

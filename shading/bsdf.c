@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Dispatch over the closed set of bsdf kinds, and the rays that leave them.
+#include "lobes.h"
+
+bool ty_bsdf_is_delta(const ty_bsdf* bsdf)
+{
+    switch (bsdf->kind)
+    {
+    case TY_BSDF_SURFACE:
+        return ty_surface_is_delta(bsdf);
+    case TY_BSDF_CDRF_COAT:
+        return bsdf->coat_alpha == 0.0f;
+    case TY_BSDF_CDRF: // nothing can be evaluated before it is resolved
+        return true;
+    case TY_BSDF_CDRF_LOCAL:
+    case TY_BSDF_CDRF_EXIT:
+        break;
+    }
+    return false;
+}
+
+ty_rgb ty_bsdf_eval(const ty_bsdf* bsdf, ty_vec3 wi_world, float* pdf)
+{
+    ty_vec3 wo = ty_to_local(bsdf->frame, bsdf->wo), wi = ty_to_local(bsdf->frame, wi_world);
+    *pdf = 0.0f;
+    switch (bsdf->kind)
+    {
+    case TY_BSDF_SURFACE:
+        return ty_surface_eval(bsdf, wo, wi, pdf);
+    case TY_BSDF_CDRF_LOCAL:
+        return ty_local_eval(bsdf, wo, wi, pdf);
+    case TY_BSDF_CDRF_EXIT:
+        return ty_exit_eval(bsdf, wi, pdf);
+    case TY_BSDF_CDRF_COAT:
+        return ty_coat_eval(bsdf, wo, wi, pdf);
+    case TY_BSDF_CDRF:
+        break;
+    }
+    return ty_rgb_grey(0.0f);
+}
+
+bool ty_bsdf_sample_wi(const ty_bsdf* bsdf, float u_lobe, ty_vec2 u, ty_bsdf_sample* out)
+{
+    ty_vec3 wo = ty_to_local(bsdf->frame, bsdf->wo);
+    bool kept = false;
+    switch (bsdf->kind)
+    {
+    case TY_BSDF_SURFACE:
+        kept = ty_surface_sample(bsdf, wo, u_lobe, u, out);
+        break;
+    case TY_BSDF_CDRF_LOCAL:
+        kept = ty_local_sample(bsdf, wo, u_lobe, u, out);
+        break;
+    case TY_BSDF_CDRF_EXIT:
+        kept = ty_exit_sample(bsdf, u, out);
+        break;
+    case TY_BSDF_CDRF_COAT:
+        kept = ty_coat_sample(bsdf, wo, u, out);
+        break;
+    case TY_BSDF_CDRF:
+        break;
+    }
+    if (kept)
+        out->wi = ty_normalize(ty_to_world(bsdf->frame, out->wi));
+    return kept;
+}
+
+ty_rgb ty_bsdf_albedo(const ty_bsdf* bsdf)
+{
+    return bsdf->kind == TY_BSDF_SURFACE ? ty_surface_albedo(bsdf) : ty_cdrf_albedo(bsdf);
+}
+
+ty_rgb ty_bsdf_absorption(const ty_bsdf* bsdf)
+{
+    return bsdf->absorption;
+}
+
+// Light of `local` that comes from below the horizon has passed through the object itself.
+static void skip_attached_shadow(const ty_bsdf* bsdf, ty_vec3 wi, float u, ty_ray* ray)
+{
+    float cosine = ty_dot(wi, bsdf->frame.n), k = ty_local_curvature(bsdf, ty_to_local(bsdf->frame, wi));
+    ray->skip_object = bsdf->point.object;
+    ray->skip_instance = bsdf->point.instance;
+    // Three chords 2|cos|/k of the osculating sphere, +-30 % so that no edge shows.
+    float distance = -6.0f * cosine * (0.7f + 0.6f * u);
+    ray->skip_distance = k * TY_FLOAT_MAX > distance ? distance / k : TY_FLOAT_MAX;
+}
+
+void ty_bsdf_spawn(const ty_bsdf* bsdf, ty_vec3 wi, float u, ty_ray* ray)
+{
+    const ty_surface_point* p = &bsdf->point;
+    *ray = (ty_ray){
+        .origin = ty_offset_origin(p->position, ty_dot(wi, p->ng) >= 0.0f ? p->ng : ty_neg(p->ng)),
+        .direction = wi,
+        .t_max = TY_FLOAT_MAX,
+        .flags = TY_RAY_FRONT_ONLY,
+        .skip_instance = TY_NONE,
+    };
+    bool below = ty_dot(wi, bsdf->frame.n) < 0.0f;
+    // What leaves a convex body on its outer side cannot meet it again, the facets of its mesh apart.
+    bool outwards = bsdf->kind == TY_BSDF_CDRF_LOCAL || ty_dot(wi, p->ns) > 0.0f;
+    if (bsdf->convex && outwards)
+    {
+        ray->skip_object = p->object;
+        ray->skip_instance = p->instance;
+        ray->skip_distance = TY_FLOAT_MAX;
+    }
+    else if (bsdf->kind == TY_BSDF_CDRF_LOCAL && below)
+        skip_attached_shadow(bsdf, wi, u, ray);
+}

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// `cdrf`: preparation, the choice between coat and interior, and the lobes after that choice.
+#include "curvature_at.h"
+#include "fresnel.h"
+#include "lobes.h"
+#include "material_private.h"
+#include "microfacet.h"
+#include <tsuya/shading/cdrf.h>
+
+// A film of water darkens and saturates: colour^(1 + .15 film). White stays white.
+static float film_color(float c, float film)
+{
+    c = ty_clamp(c, 0.0f, 1.0f);
+    return c < 1.0f ? ty_pow(c, 1.0f + 0.15f * film) : 1.0f;
+}
+
+static ty_moisture_optics optics_at(const ty_cdrf_def* d, const ty_shading_context* context, const ty_surface_point* p)
+{
+    ty_moisture_def def = ty_moisture_def_default();
+    def.wet_basis = ty_clamp(ty_input_float(&d->moisture, context, p), 0.05f, 1.0f);
+    def.cooked = d->cooked;
+    return ty_moisture_optics_make(ty_moisture_make(&def));
+}
+
+static void prepare_coat(const ty_material* material, const ty_shading_context* context,
+                         const ty_moisture_optics* optics, ty_bsdf* b)
+{
+    const ty_cdrf_def* d = &material->cdrf;
+    if (!material->coat)
+        return;
+    float roughness = ty_input_float(&d->specular_roughness, context, &b->point);
+    roughness = roughness < 0.0f ? optics->roughness : ty_min(roughness, 1.0f);
+    // A dry surface is dusty and broken: half its area shines.
+    float weight = ty_clamp(ty_input_float(&d->specular_weight, context, &b->point), 0.0f, 1.0f);
+    b->coat_weight = weight * (0.5f + 0.5f * optics->film);
+    b->coat_alpha = ty_ggx_alpha(roughness);
+    b->coat_eta = d->specular_ior;
+    b->coat_row = ty_albedo_table_row(material->coat, roughness, d->specular_ior);
+}
+
+void ty_cdrf_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
+{
+    const ty_cdrf_def* d = &material->cdrf;
+    ty_moisture_optics optics = optics_at(d, context, &b->point);
+    ty_rgb color = ty_input_color(&d->color, context, &b->point);
+    b->color = ty_rgb_make(film_color(color.r, optics.film), film_color(color.g, optics.film),
+                           film_color(color.b, optics.film));
+    b->mean_free_path = ty_input_float(&d->mean_free_path, context, &b->point);
+    if (b->mean_free_path < 0.0f)
+    {
+        b->mean_free_path = optics.mean_free_path;
+        // Left to the moisture, the published form keeps the published law, linear in curvature.
+        b->sigma_slope = d->kernel == TY_CDRF_GAUSSIAN_PUBLISHED ? optics.gaussian_sigma : 0.0f;
+    }
+    prepare_coat(material, context, &optics, b);
+    b->kind = TY_BSDF_CDRF;
+    if (d->evaluate == TY_CDRF_LOCAL)
+    {
+        b->kind = TY_BSDF_CDRF_LOCAL;
+        ty_local_prepare(context, b);
+    }
+}
+
+float ty_cdrf_spread(const ty_bsdf* b, float curvature)
+{
+    if (b->sigma_slope > 0.0f)
+        return b->sigma_slope * curvature;
+    float x = b->mean_free_path * curvature;
+    return b->material->cdrf.kernel == TY_CDRF_POISSON ? ty_cdrf_poisson_t(x) : ty_cdrf_gaussian_sigma(x);
+}
+
+static bool trace_interior(const ty_bsdf* b, const ty_shading_context* context, const float u[3], ty_rng* extra,
+                           ty_surface_point* exit)
+{
+    if (!context || !context->world)
+        return false;
+    if (b->material->cdrf.evaluate == TY_CDRF_DEPTH)
+        return ty_cdrf_depth_exit(context, &b->point, b->mean_free_path, u, extra, exit);
+    return ty_cdrf_probe_exit(context, b, u, exit);
+}
+
+// The published kernel is not normalised: its integral over pi is part of the weight.
+static float kernel_gain(const ty_bsdf* b, const ty_shading_context* context)
+{
+    if (b->material->cdrf.kernel != TY_CDRF_GAUSSIAN_PUBLISHED || !context || !context->world)
+        return 1.0f;
+    return ty_cdrf_gaussian_integral(ty_cdrf_spread(b, b->curvature)) * TY_INV_PI;
+}
+
+bool ty_bsdf_resolve(ty_bsdf* b, const ty_shading_context* context, const float u[4], ty_rng* extra, ty_rgb* weight)
+{
+    *weight = ty_rgb_grey(1.0f);
+    if (b->kind != TY_BSDF_CDRF)
+        return true;
+    float coat = ty_coat_albedo(b, ty_dot(b->wo, b->frame.n));
+    // The coat carries the highlights, which are bright where they are: never sampled less than one time in four.
+    float chance = b->coat_weight > 0.0f ? ty_clamp(coat, 0.25f, 0.9f) : 0.0f;
+    if (u[0] < chance)
+    {
+        b->kind = TY_BSDF_CDRF_COAT;
+        *weight = ty_rgb_grey(1.0f / chance);
+        return true;
+    }
+    if (b->material->cdrf.evaluate == TY_CDRF_PROBE && context && context->world)
+        b->curvature = ty_mean_curvature(context->world, &b->point);
+    float through = (1.0f - coat) / ((1.0f - b->coat_weight * b->coat_row.average) * (1.0f - chance));
+    *weight = ty_rgb_scale(b->color, through * kernel_gain(b, context));
+    ty_surface_point exit;
+    if (trace_interior(b, context, u + 1, extra, &exit))
+        b->point = exit;
+    b->kind = TY_BSDF_CDRF_EXIT;
+    b->frame = ty_frame_from_normal(b->point.ns);
+    return !ty_rgb_is_black(*weight);
+}
+
+float ty_coat_albedo(const ty_bsdf* b, float mu)
+{
+    return b->coat_weight > 0.0f ? b->coat_weight * ty_albedo_row_at(&b->coat_row, mu) : 0.0f;
+}
+
+ty_rgb ty_coat_eval(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
+{
+    *pdf = 0.0f;
+    if (wi.z <= 0.0f || wo.z <= 0.0f || b->coat_alpha == 0.0f)
+        return ty_rgb_grey(0.0f);
+    float cos_h, d = ty_ggx_reflect(wo, wi, b->coat_alpha, pdf, &cos_h);
+    return ty_rgb_grey(b->coat_weight * ty_fresnel(cos_h, b->coat_eta) * d);
+}
+
+bool ty_coat_sample(const ty_bsdf* b, ty_vec3 wo, ty_vec2 u, ty_bsdf_sample* out)
+{
+    if (b->coat_alpha == 0.0f)
+    {
+        *out = (ty_bsdf_sample){.wi = ty_vec3_make(-wo.x, -wo.y, wo.z), .delta = true};
+        out->weight = ty_rgb_grey(b->coat_weight * ty_fresnel(wo.z, b->coat_eta));
+        return true;
+    }
+    *out = (ty_bsdf_sample){.wi = ty_reflect(wo, ty_ggx_sample(wo, b->coat_alpha, u))};
+    ty_rgb f = ty_coat_eval(b, wo, out->wi, &out->pdf);
+    if (out->pdf <= 0.0f)
+        return false;
+    out->weight = ty_rgb_scale(f, 1.0f / out->pdf);
+    return true;
+}
+
+ty_rgb ty_exit_eval(const ty_bsdf* b, ty_vec3 wi, float* pdf)
+{
+    *pdf = ty_max(wi.z, 0.0f) * TY_INV_PI;
+    return ty_rgb_grey(*pdf * (1.0f - ty_coat_albedo(b, wi.z)));
+}
+
+bool ty_exit_sample(const ty_bsdf* b, ty_vec2 u, ty_bsdf_sample* out)
+{
+    *out = (ty_bsdf_sample){.wi = ty_sample_cosine(u)};
+    ty_rgb f = ty_exit_eval(b, out->wi, &out->pdf);
+    if (out->pdf <= 0.0f)
+        return false;
+    out->weight = ty_rgb_scale(f, 1.0f / out->pdf);
+    return true;
+}
+
+ty_rgb ty_cdrf_albedo(const ty_bsdf* b)
+{
+    if (b->kind == TY_BSDF_CDRF_EXIT)
+        return b->color;
+    float coat = ty_coat_albedo(b, ty_dot(b->wo, b->frame.n));
+    return ty_rgb_add(ty_rgb_grey(coat), ty_rgb_scale(b->color, 1.0f - coat));
+}

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// `evaluate: local`: the kernel's response at the point itself, over the whole sphere of directions, under the coat.
+#include "curvature_at.h"
+#include "lobes.h"
+#include "material_private.h"
+#include <tsuya/shading/cdrf.h>
+
+enum
+{
+    LOBE_COAT,
+    LOBE_COSINE,
+    LOBE_UNIFORM,
+};
+
+float ty_local_curvature(const ty_bsdf* b, ty_vec3 wi)
+{
+    float radius_sqr = wi.x * wi.x + wi.y * wi.y;
+    const float* f = b->second_form;
+    if (radius_sqr < 1e-12f) // along the normal every direction is as good
+        return ty_max(0.5f * (f[0] + f[2]), 0.0f);
+    return ty_max((f[0] * wi.x * wi.x + 2.0f * f[1] * wi.x * wi.y + f[2] * wi.y * wi.y) / radius_sqr, 0.0f);
+}
+
+// Share of the response below the horizon: mean over the two principal directions, so that neither is starved.
+static float share_below(const ty_bsdf* b)
+{
+    const float* f = b->second_form;
+    float mean = 0.5f * (f[0] + f[2]), half = sqrtf(0.25f * ty_sqr(f[0] - f[2]) + f[1] * f[1]);
+    float k1 = ty_max(mean + half, 0.0f), k2 = ty_max(mean - half, 0.0f);
+    int kernel = b->material->cdrf.kernel;
+    return 0.5f *
+           (ty_cdrf_share_below(kernel, ty_cdrf_spread(b, k1)) + ty_cdrf_share_below(kernel, ty_cdrf_spread(b, k2)));
+}
+
+void ty_local_prepare(const ty_shading_context* context, ty_bsdf* b)
+{
+    if (context && context->world && b->entering)
+    {
+        ty_second_form(context->world, &b->point, b->frame.t, b->frame.b, b->second_form);
+        b->curvature = 0.5f * (b->second_form[0] + b->second_form[2]);
+    }
+    float coat = ty_coat_albedo(b, ty_dot(b->wo, b->frame.n));
+    float p_coat = b->coat_weight > 0.0f ? ty_clamp(coat, 0.25f, 0.9f) : 0.0f;
+    float uniform = ty_min(2.0f * share_below(b), 1.0f);
+    b->lobe_probability[LOBE_COAT] = p_coat;
+    b->lobe_probability[LOBE_COSINE] = (1.0f - p_coat) * (1.0f - uniform);
+    b->lobe_probability[LOBE_UNIFORM] = (1.0f - p_coat) * uniform;
+}
+
+// Response to light from wi where a lit Lambert point is 1; integral over the sphere pi (published: I).
+static float response(const ty_bsdf* b, ty_vec3 wi)
+{
+    float spread = ty_cdrf_spread(b, ty_local_curvature(b, wi));
+    switch (b->material->cdrf.kernel)
+    {
+    case TY_CDRF_POISSON:
+        return ty_poisson_table_at(b->material->poisson, ty_exp(-spread), wi.z);
+    case TY_CDRF_GAUSSIAN:
+        return ty_cdrf_gaussian_cos(spread, wi.z) * (TY_PI / ty_cdrf_gaussian_integral(spread));
+    default:
+        return ty_cdrf_gaussian_cos(spread, wi.z);
+    }
+}
+
+ty_rgb ty_local_eval(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
+{
+    const float* p = b->lobe_probability;
+    // Refraction on the way in is left at its average: with it inside the convolution the furnace would need a
+    // normaliser for each roughness, index and spread.
+    float interior = (1.0f - ty_coat_albedo(b, wo.z)) * response(b, wi) * TY_INV_PI, coat_pdf;
+    ty_rgb f = ty_rgb_add(ty_rgb_scale(b->color, interior), ty_coat_eval(b, wo, wi, &coat_pdf));
+    *pdf = p[LOBE_COAT] * coat_pdf + p[LOBE_COSINE] * ty_max(wi.z, 0.0f) * TY_INV_PI +
+           p[LOBE_UNIFORM] * (0.25f * TY_INV_PI);
+    return f;
+}
+
+bool ty_local_sample(const ty_bsdf* b, ty_vec3 wo, float u_lobe, ty_vec2 u, ty_bsdf_sample* out)
+{
+    const float* p = b->lobe_probability;
+    if (u_lobe < p[LOBE_COAT])
+    {
+        if (!ty_coat_sample(b, wo, u, out))
+            return false;
+        if (out->delta)
+        {
+            out->weight = ty_rgb_scale(out->weight, 1.0f / p[LOBE_COAT]);
+            return true;
+        }
+    }
+    else
+    {
+        bool cosine = u_lobe < p[LOBE_COAT] + p[LOBE_COSINE];
+        *out = (ty_bsdf_sample){.wi = cosine ? ty_sample_cosine(u) : ty_sample_sphere(u)};
+    }
+    ty_rgb f = ty_local_eval(b, wo, out->wi, &out->pdf);
+    if (out->pdf <= 0.0f)
+        return false;
+    out->weight = ty_rgb_scale(f, 1.0f / out->pdf);
+    return true;
+}

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The members of the closed set of bsdf kinds. All directions here are in the local frame, wo.z > 0 unless said.
+#pragma once
+#include <tsuya/shading/material.h>
+#include <tsuya/shading/sampling.h>
+
+bool ty_surface_is_delta(const ty_bsdf* bsdf);
+ty_rgb ty_surface_eval(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf);
+bool ty_surface_sample(const ty_bsdf* bsdf, ty_vec3 wo, float u_lobe, ty_vec2 u, ty_bsdf_sample* out);
+ty_rgb ty_surface_albedo(const ty_bsdf* bsdf);
+
+// One dielectric reflection of the coat, as CDRF_COAT, and as a part of others. Its weight is coat_weight.
+ty_rgb ty_coat_eval(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf);
+bool ty_coat_sample(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec2 u, ty_bsdf_sample* out);
+float ty_coat_albedo(const ty_bsdf* bsdf, float mu); // coat_weight * E(mu)
+
+// Lambert under the coat, at the point where light leaves; wi alone matters.
+ty_rgb ty_exit_eval(const ty_bsdf* bsdf, ty_vec3 wi, float* pdf);
+bool ty_exit_sample(const ty_bsdf* bsdf, ty_vec2 u, ty_bsdf_sample* out);
+
+void ty_local_prepare(const ty_shading_context* context, ty_bsdf* bsdf); // lobe probabilities, second form
+ty_rgb ty_local_eval(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf);
+bool ty_local_sample(const ty_bsdf* bsdf, ty_vec3 wo, float u_lobe, ty_vec2 u, ty_bsdf_sample* out);
+float ty_local_curvature(const ty_bsdf* bsdf, ty_vec3 wi); // 1/m, in the tangential direction of wi, >= 0
+
+ty_rgb ty_cdrf_albedo(const ty_bsdf* bsdf);
+float ty_cdrf_spread(const ty_bsdf* bsdf, float curvature); // t or sigma
+
+// Where a walk that enters at x leaves. u: three numbers. Returns false where x itself is the answer.
+bool ty_cdrf_depth_exit(const ty_shading_context* context, const ty_surface_point* x, float mean_free_path,
+                        const float u[3], ty_rng* extra, ty_surface_point* exit);
+bool ty_cdrf_probe_exit(const ty_shading_context* context, const ty_bsdf* bsdf, const float u[3],
+                        ty_surface_point* exit);

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// Defaults and parameter tables of the materials.
+#include <tsuya/shading/material.h>
+
+ty_surface_def ty_surface_def_default(void)
+{
+    return (ty_surface_def){
+        .base_color = ty_input_scalar(0.8f),
+        .base_metalness = ty_input_scalar(0.0f),
+        .specular_weight = ty_input_scalar(1.0f),
+        .specular_color = ty_input_scalar(1.0f),
+        .specular_roughness = ty_input_scalar(0.3f),
+        .specular_ior = ty_input_scalar(1.5f),
+        .transmission_weight = ty_input_scalar(0.0f),
+        .transmission_color = ty_input_scalar(1.0f),
+        .transmission_depth = 0.0f,
+        .coat_weight = ty_input_scalar(0.0f),
+        .coat_roughness = ty_input_scalar(0.0f),
+        .coat_ior = 1.6f,
+        .emission_luminance = ty_input_scalar(0.0f),
+        .emission_color = ty_input_scalar(1.0f),
+    };
+}
+
+// Cooked rice.
+ty_cdrf_def ty_cdrf_def_default(void)
+{
+    return (ty_cdrf_def){
+        .color = ty_input_make(ty_rgb_make(0.80f, 0.79f, 0.73f)),
+        .moisture = ty_input_scalar(0.62f),
+        .cooked = -1.0f,
+        .mean_free_path = ty_input_scalar(-1e-3f),
+        .kernel = TY_CDRF_POISSON,
+        .evaluate = TY_CDRF_DEPTH,
+        .specular_weight = ty_input_scalar(1.0f),
+        .specular_roughness = ty_input_scalar(-1.0f),
+        .specular_ior = 1.38f,
+    };
+}
+
+static void surface_default(void* def)
+{
+    *(ty_surface_def*)def = ty_surface_def_default();
+}
+
+static void cdrf_default(void* def)
+{
+    *(ty_cdrf_def*)def = ty_cdrf_def_default();
+}
+
+#define ROW(field, kind, unit_, low, high, text)                                                                       \
+    {                                                                                                                  \
+        .name = #field, .type = kind, .unit = unit_, .minimum = low, .maximum = high, .offset = offsetof(DEF, field),  \
+        .help = text                                                                                                   \
+    }
+#define SCALAR TY_PARAM_SCALAR_INPUT
+#define COLOR TY_PARAM_COLOR_INPUT
+#define NUMBER TY_PARAM_FLOAT
+
+#define DEF ty_surface_def
+static const ty_param surface_rows[] = {
+    ROW(base_color, COLOR, "", 0, 1, "albedo of the diffuse base, or reflectance of the metal"),
+    ROW(base_metalness, SCALAR, "", 0, 1, "0 = dielectric, 1 = metal"),
+    ROW(specular_weight, SCALAR, "", 0, 1, "strength of the specular reflection"),
+    ROW(specular_color, COLOR, "", 0, 1, "tint of the dielectric reflection; of a metal at grazing angles"),
+    ROW(specular_roughness, SCALAR, "", 0, 1, "GGX alpha is its square; below .02 it is a mirror"),
+    ROW(specular_ior, SCALAR, "", 1, 3, "refractive index of the dielectric"),
+    ROW(transmission_weight, SCALAR, "", 0, 1, "share of the dielectric base that is clear instead of diffuse"),
+    ROW(transmission_color, COLOR, "", 0, 1, "tint over transmission_depth, or per surface where that is 0"),
+    ROW(transmission_depth, NUMBER, "m", 0, 1000, "way through the body after which transmission_color is reached"),
+    ROW(coat_weight, SCALAR, "", 0, 1, "strength of the clear coat"),
+    ROW(coat_roughness, SCALAR, "", 0, 1, "roughness of the coat"),
+    ROW(coat_ior, NUMBER, "", 1, 3, "refractive index of the coat"),
+    ROW(emission_luminance, SCALAR, "W/(m^2 sr)", 0, 1e9, "radiance emitted on the outer side"),
+    ROW(emission_color, COLOR, "", 0, 1000, "colour of the emission"),
+};
+#undef DEF
+
+static const char* const kernel_names[] = {"poisson", "gaussian", "gaussian_published", NULL};
+static const char* const evaluate_names[] = {"depth", "probe", "local", NULL};
+
+#define DEF ty_cdrf_def
+static const ty_param cdrf_rows[] = {
+    ROW(color, COLOR, "", 0, 1, "share of the entered light that leaves again"),
+    ROW(moisture, SCALAR, "", 0.05, 1, "water per total mass: rice is .145 raw, .31 soaked, .62 cooked"),
+    ROW(cooked, NUMBER, "", -1, 1, "degree of gelatinisation; negative: follows from moisture"),
+    ROW(mean_free_path, SCALAR, "mm", -1, 1000, "transport mean free path; negative: from moisture"),
+    {.name = "kernel",
+     .type = TY_PARAM_ENUM,
+     .unit = "",
+     .choices = kernel_names,
+     .offset = offsetof(ty_cdrf_def, kernel),
+     .help = "poisson fits random walks best; gaussian as published, normalised or not"},
+    {.name = "evaluate",
+     .type = TY_PARAM_ENUM,
+     .unit = "",
+     .choices = evaluate_names,
+     .offset = offsetof(ty_cdrf_def, evaluate),
+     .help = "depth: a short ray inside; probe: from the osculating sphere; local: no ray"},
+    ROW(specular_weight, SCALAR, "", 0, 1, "strength of the reflection at the surface; less where it is dry"),
+    ROW(specular_roughness, SCALAR, "", -1, 1, "roughness of the reflection; negative: from moisture"),
+    ROW(specular_ior, NUMBER, "", 1, 3, "refractive index of the surface"),
+};
+#undef DEF
+
+const ty_param_table* ty_surface_params(void)
+{
+    static const ty_param_table table = {
+        .name = "material.surface",
+        .help = "Layered surface with the names of OpenPBR: a coat over metal, diffuse or clear dielectric.",
+        .size = sizeof(ty_surface_def),
+        .set_default = surface_default,
+        .params = surface_rows,
+        .count = TY_PARAM_COUNT(surface_rows),
+    };
+    return &table;
+}
+
+const ty_param_table* ty_cdrf_params(void)
+{
+    static const ty_param_table table = {
+        .name = "material.cdrf",
+        .help = "Translucent matter by curvature reflectance, driven by moisture; for closed objects.",
+        .size = sizeof(ty_cdrf_def),
+        .set_default = cdrf_default,
+        .params = cdrf_rows,
+        .count = TY_PARAM_COUNT(cdrf_rows),
+    };
+    return &table;
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a material holds, and the preparation of its lobes by model.
+#pragma once
+#include "albedo_table.h"
+#include "kernel_table.h"
+#include <tsuya/shading/material.h>
+
+typedef enum ty_material_model
+{
+    TY_MODEL_SURFACE,
+    TY_MODEL_CDRF,
+} ty_material_model;
+
+struct ty_material
+{
+    ty_material_model model;
+    ty_surface_def surface;
+    ty_cdrf_def cdrf;
+    ty_albedo_table* specular; // E of the dielectric specular of `surface`, or NULL where it has none
+    ty_albedo_table* coat;     // E of the coat of `surface`, or of the specular reflection of `cdrf`
+    ty_poisson_table* poisson; // for `local` with the Poisson kernel
+};
+
+// out holds point, frame, wo, entering and convex already.
+void ty_surface_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
+void ty_cdrf_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a moisture state to optics. The constants are ours, see docs: the paper gives the form and leaves them out.
+#include <tsuya/shading/cdrf.h>
+
+static const float raw_wet_basis = 0.145f, soaked_wet_basis = 0.31f, cooked_wet_basis = 0.62f;
+static const float driest_wet_basis = 0.05f;
+static const float dry_roughness = 0.45f, film_roughness = 0.17f;
+
+static float smoothstep(float low, float high, float x)
+{
+    float s = ty_clamp((x - low) / (high - low), 0.0f, 1.0f);
+    return s * s * (3.0f - 2.0f * s);
+}
+
+ty_moisture_optics ty_moisture_optics_make(ty_moisture state)
+{
+    float w = ty_clamp(state.wet_basis, driest_wet_basis, 1.0f), log_w = ty_ln(w);
+    float cooked = ty_clamp(state.cooked, 0.0f, 1.0f);
+    // A soaked raw grain turns whiter: .19 -> .10 mm (logarithms of both).
+    float soaking = ty_clamp((w - raw_wet_basis) / (soaked_wet_basis - raw_wet_basis), 0.0f, 1.0f);
+    float log_raw = ty_lerp(-1.6607312f, -2.3025851f, soaking), log_cooked = 0.0736f + 0.9f * log_w;
+    // Water stays on the surface once the grain is near saturation: the film fills the roughness.
+    float film = smoothstep(0.10f, cooked_wet_basis, w);
+    return (ty_moisture_optics){
+        .mean_free_path = 1e-3f * ty_exp(ty_lerp(log_raw, log_cooked, cooked)),
+        .gaussian_sigma = 1e-3f * ty_exp(0.34f + 0.52f * log_w),
+        .film = film,
+        .roughness = ty_lerp(dry_roughness, film_roughness, film),
+    };
+}
