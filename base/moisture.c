@@ -32,17 +32,15 @@ static float uptake_of(float wet_basis)
 
 ty_moisture ty_moisture_make(const ty_moisture_def* def)
 {
-    float wet, cooked = ty_min(def->cooked, 1.0f);
     if (def->wet_basis >= 0.0f)
-        wet = ty_clamp(def->wet_basis, least_wet_basis, 1.0f);
-    else
     {
-        float uptake = ty_moisture_uptake(def->soak_minutes, def->soak_celsius);
-        if (cooked > 0.0f)
-            uptake = ty_lerp(uptake, uptake_of(cooked_wet_basis), cooked);
-        wet = ty_moisture_wet_basis(uptake);
+        float wet = ty_clamp(def->wet_basis, least_wet_basis, 1.0f);
+        float guess = ty_clamp((wet - 0.31f) / (0.45f - 0.31f), 0.0f, 1.0f);
+        return (ty_moisture){wet, def->cooked < 0.0f ? guess : ty_min(def->cooked, 1.0f)};
     }
-    if (cooked < 0.0f)
-        cooked = ty_clamp((wet - 0.31f) / (0.45f - 0.31f), 0.0f, 1.0f);
-    return (ty_moisture){wet, cooked};
+    // Below 60 degrees soaking alone gelatinises nothing.
+    float cooked = ty_clamp(def->cooked, 0.0f, 1.0f);
+    float uptake = ty_moisture_uptake(def->soak_minutes, def->soak_celsius);
+    uptake = ty_lerp(uptake, uptake_of(cooked_wet_basis), cooked);
+    return (ty_moisture){ty_moisture_wet_basis(uptake), cooked};
 }
