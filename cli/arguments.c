@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Command lines: options by table, numbers with their range, help.
 #include "cli.h"
-#include <tsuya/base/suggest.h>
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <tsuya/base/log.h>
+#include <tsuya/base/suggest.h>
 
 ty_status ty_usage(const ty_command* command, const char* format, ...)
 {

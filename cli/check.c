@@ -32,8 +32,8 @@ static ty_status report(const ty_arguments* arguments, ty_scene* scene, ty_error
     if (status == TY_OK)
     {
         printf("%s: no mistakes; %d objects, %d materials, %d lights, %dx%d, %d samples\n", scene->path,
-               scene->object_count, scene->material_count, scene->light_count, scene->film.size[0],
-               scene->film.size[1], scene->render.samples);
+               scene->object_count, scene->material_count, scene->light_count, scene->film.size[0], scene->film.size[1],
+               scene->render.samples);
         return ty_output_finish();
     }
     return status;

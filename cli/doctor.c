@@ -35,11 +35,11 @@ static void check_trace(json_t* root)
     ty_world_def def = ty_world_def_default();
     ty_affine identity = ty_affine_identity();
     uint32_t prototype = 0, object = 0;
-    bool ok = ty_shape_create(&shape, &mesh, &error) == TY_OK && ty_world_create(&def, &world, &error) == TY_OK &&
-              ty_world_add_prototype(world, mesh, &prototype, &error) == TY_OK &&
-              ty_world_add_object(world, prototype, &identity, (ty_object_flags){false, true}, &object, &error) ==
-                  TY_OK &&
-              ty_world_commit(world, &error) == TY_OK;
+    bool ok =
+        ty_shape_create(&shape, &mesh, &error) == TY_OK && ty_world_create(&def, &world, &error) == TY_OK &&
+        ty_world_add_prototype(world, mesh, &prototype, &error) == TY_OK &&
+        ty_world_add_object(world, prototype, &identity, (ty_object_flags){false, true}, &object, &error) == TY_OK &&
+        ty_world_commit(world, &error) == TY_OK;
     if (ok)
     {
         ty_ray ray = {.origin = {0.01f, 0.02f, 3},

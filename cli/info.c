@@ -108,8 +108,8 @@ static ty_status info_aggregate(const char* path, bool recipe, json_t** out, ty_
     }
     json_t* metrics = aggregate->metrics ? json_loads(aggregate->metrics, 0, NULL) : NULL;
     *out = json_pack("{s:s, s:i, s:i, s:o, s:s?, s:o}", "type", "aggregate", "instances",
-                     (int)aggregate->instance_count, "prototypes", aggregate->prototype_count, "attributes",
-                     attributes, "hash", aggregate->hash, "metrics", metrics ? metrics : json_null());
+                     (int)aggregate->instance_count, "prototypes", aggregate->prototype_count, "attributes", attributes,
+                     "hash", aggregate->hash, "metrics", metrics ? metrics : json_null());
     ty_aggregate_destroy(aggregate);
     return TY_OK;
 }
@@ -146,9 +146,9 @@ static ty_status info_image(const char* path, json_t** out, ty_error* error)
     ty_status status = ty_image_read(path, &image, error);
     if (status == TY_OK)
     {
-        *out = json_pack("{s:s, s:i, s:i, s:i, s:b, s:s}", "type", "image", "width", image.width, "height",
-                         image.height, "channels", image.channels, "float", image.is_float, "color_space",
-                         image.color_space);
+        *out =
+            json_pack("{s:s, s:i, s:i, s:i, s:b, s:s}", "type", "image", "width", image.width, "height", image.height,
+                      "channels", image.channels, "float", image.is_float, "color_space", image.color_space);
         ty_image_term(&image);
     }
     return status;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program: finds the command and leaves with its status.
 #include "cli.h"
-#include <tsuya/base/suggest.h>
 #include <stdio.h>
 #include <string.h>
 #include <tsuya/base/file.h>
 #include <tsuya/base/log.h>
+#include <tsuya/base/suggest.h>
 
 static const ty_command* const commands[] = {&ty_command_render, &ty_command_develop, &ty_command_merge,
                                              &ty_command_check,  &ty_command_info,    &ty_command_params,

@@ -32,8 +32,8 @@ static ty_status read_pair(const ty_arguments* arguments, const char* name, char
     if (sscanf(text, "%d%c%d%c", &out[0], &middle, &out[1], &rest) != 3 || middle != separator || out[0] < low ||
         out[1] < low)
     {
-        return ty_usage(arguments->command, "--%s: '%s' is not of the form A%cB with numbers of at least %d", name, text,
-                        separator, low);
+        return ty_usage(arguments->command, "--%s: '%s' is not of the form A%cB with numbers of at least %d", name,
+                        text, separator, low);
     }
     return TY_OK;
 }
@@ -158,8 +158,9 @@ static ty_status read_samples(const ty_arguments* arguments, int samples, int ra
     range[1]++; // as typed, the last one is meant as well
     if (range[0] >= range[1] || range[1] > samples)
     {
-        return ty_usage(arguments->command, "--samples: %d-%d is no range within 0-%d (the scene's samples; --spp "
-                                            "changes them)",
+        return ty_usage(arguments->command,
+                        "--samples: %d-%d is no range within 0-%d (the scene's samples; --spp "
+                        "changes them)",
                         range[0], range[1] - 1, samples - 1);
     }
     return TY_OK;
@@ -290,7 +291,8 @@ static ty_status judge_samples(const render_job* job, const ty_render_stats* sta
     }
     const int* first = stats->first_nonfinite;
     ty_log(TY_LOG_WARNING,
-           "%" PRIu64 " samples were not finite and count as black; the first is pixel %d,%d sample %d: tsuya render %s "
+           "%" PRIu64
+           " samples were not finite and count as black; the first is pixel %d,%d sample %d: tsuya render %s "
            "--crop %d,%d,%d,%d --samples %d-%d -o bad.exr",
            stats->nonfinite_samples, first[0], first[1], first[2], job->arguments->positional[0], first[0], first[1],
            first[0], first[1], first[2], first[2]);
@@ -405,7 +407,7 @@ static ty_status read_progress(const ty_arguments* arguments)
 
 static ty_status run(const ty_arguments* arguments)
 {
-    static render_job job;                      // paths: too large for the stack
+    static render_job job; // paths: too large for the stack
     static ty_scene_arguments scene_arguments;
     job = (render_job){.arguments = arguments};
     ty_status status = read_progress(arguments);

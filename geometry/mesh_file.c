@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which reader a mesh file goes to.
+#include "mesh_import.h"
+#include <strings.h>
+#include <tsuya/base/file.h>
+#include <tsuya/geometry/mesh_file.h>
+
+static const size_t LARGEST = (size_t)8 << 30; // bytes
+
+static ty_status read_ply(const char* path, ty_mesh** out, ty_error* error)
+{
+    ty_bytes bytes;
+    ty_status status = ty_file_read(path, LARGEST, &bytes, error);
+    if (status == TY_OK)
+    {
+        status = ty_ply_read_memory(path, bytes.data, bytes.size, out, error);
+        ty_bytes_term(&bytes);
+    }
+    return status;
+}
+
+ty_status ty_mesh_read(const char* path, ty_mesh** out, ty_error* error)
+{
+    *out = NULL;
+    const char* extension = ty_path_extension(path);
+    if (strcasecmp(extension, "ply") == 0)
+    {
+        return read_ply(path, out, error);
+    }
+    if (mesh_import_knows(extension))
+    {
+        if (!ty_file_exists(path))
+        {
+            return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "no such file");
+        }
+        return mesh_import(path, out, error);
+    }
+    if (strcasecmp(extension, "glb") == 0 || strcasecmp(extension, "gltf") == 0)
+    {
+        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "use it as an aggregate: `aggregate: %s`", path);
+    }
+    return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "unknown mesh type '.%s' (ply, obj, stl, fbx, dae, off)",
+                           extension);
+}

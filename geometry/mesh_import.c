@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// The door to assimp. The child imports and sends plain arrays; the parent trusts none of them.
+#include "mesh_import.h"
+#include <assimp/cimport.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <string.h>
+#include <strings.h>
+#include <tsuya/base/file.h>
+
+static const float CREASE = 0.7f; // radians, where the file has no normals
+
+// What the child sends, followed by positions, normals (if any), uvs (if any), triangles.
+typedef struct message
+{
+    uint64_t vertex_count, triangle_count;
+    uint32_t has_normals, has_uvs, only_triangles;
+} message;
+
+bool mesh_import_knows(const char* extension)
+{
+    static const char* const known[] = {"obj", "stl", "fbx", "dae", "off"};
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+    {
+        if (strcasecmp(extension, known[i]) == 0)
+        {
+            return true;
+        }
+    }
+    return false;
+}
+
+// A pipe with a buffer: vertices are many and small.
+typedef struct sender
+{
+    int fd;
+    ty_error* error;
+    ty_status status; // the first failure
+    size_t used;
+    uint8_t buffer[65536];
+} sender;
+
+static void flush(sender* to)
+{
+    if (to->status == TY_OK)
+    {
+        to->status = ty_child_write(to->fd, to->buffer, to->used, to->error);
+    }
+    to->used = 0;
+}
+
+static void send_bytes(sender* to, const void* bytes, size_t size)
+{
+    if (to->used + size > sizeof to->buffer)
+    {
+        flush(to);
+    }
+    memcpy(to->buffer + to->used, bytes, size);
+    to->used += size;
+}
+
+static message measure(const struct aiScene* scene)
+{
+    message total = {.has_normals = 1, .has_uvs = 1, .only_triangles = 1};
+    for (unsigned i = 0; i < scene->mNumMeshes; i++)
+    {
+        const struct aiMesh* mesh = scene->mMeshes[i];
+        total.vertex_count += mesh->mNumVertices;
+        total.triangle_count += mesh->mNumFaces;
+        for (unsigned f = 0; f < mesh->mNumFaces; f++)
+        {
+            total.only_triangles &= mesh->mFaces[f].mNumIndices == 3;
+        }
+        total.has_normals &= mesh->mNormals != NULL;
+        total.has_uvs &= mesh->mTextureCoords[0] != NULL;
+    }
+    return total;
+}
+
+// One kind of array of all meshes, one mesh after another.
+static void send_vectors(sender* to, const struct aiScene* scene, int kind)
+{
+    for (unsigned i = 0; i < scene->mNumMeshes; i++)
+    {
+        const struct aiMesh* mesh = scene->mMeshes[i];
+        const struct aiVector3D* source = kind == 0   ? mesh->mVertices
+                                          : kind == 1 ? mesh->mNormals
+                                                      : mesh->mTextureCoords[0];
+        for (unsigned v = 0; v < mesh->mNumVertices; v++)
+        {
+            float values[3] = {source[v].x, source[v].y, source[v].z};
+            send_bytes(to, values, kind == 2 ? 8 : 12);
+        }
+    }
+}
+
+static void send_triangles(sender* to, const struct aiScene* scene)
+{
+    uint32_t base = 0;
+    for (unsigned i = 0; i < scene->mNumMeshes; i++)
+    {
+        const struct aiMesh* mesh = scene->mMeshes[i];
+        for (unsigned f = 0; f < mesh->mNumFaces; f++)
+        {
+            const struct aiFace* face = &mesh->mFaces[f];
+            uint32_t corners[3] = {base + face->mIndices[0], base + face->mIndices[1], base + face->mIndices[2]};
+            send_bytes(to, corners, sizeof corners);
+        }
+        base += mesh->mNumVertices;
+    }
+}
+
+static ty_status import_in_child(const void* context, int fd, ty_error* error)
+{
+    struct aiPropertyStore* properties = aiCreatePropertyStore();
+    aiSetImportPropertyInteger(properties, "PP_SBP_REMOVE", aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    unsigned steps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices |
+                     aiProcess_SortByPType;
+    const struct aiScene* scene = aiImportFileExWithProperties(context, steps, NULL, properties);
+    if (!scene || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) || scene->mNumMeshes == 0)
+    {
+        const char* reason = aiGetErrorString();
+        return ty_error_set(error, TY_BAD_FILE, "%s", scene || !reason[0] ? "there is no mesh in it" : reason);
+    }
+    message total = measure(scene);
+    if (!total.only_triangles)
+    {
+        return ty_error_set(error, TY_BAD_FILE, "a face could not be made of triangles");
+    }
+    static sender to; // the child has one, and its buffer is large
+    to = (sender){.fd = fd, .error = error};
+    send_bytes(&to, &total, sizeof total);
+    send_vectors(&to, scene, 0);
+    if (total.has_normals)
+    {
+        send_vectors(&to, scene, 1);
+    }
+    if (total.has_uvs)
+    {
+        send_vectors(&to, scene, 2);
+    }
+    send_triangles(&to, scene);
+    flush(&to);
+    return to.status;
+}
+
+static const uint8_t* take(const uint8_t* from, void* to, size_t size)
+{
+    memcpy(to, from, size);
+    return from + size;
+}
+
+static ty_status receive(const char* path, const ty_bytes* bytes, ty_mesh** out, ty_error* error)
+{
+    message total;
+    if (bytes->size < sizeof total)
+    {
+        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "the importer sent nothing");
+    }
+    const uint8_t* from = take(bytes->data, &total, sizeof total);
+    uint64_t each = 12u + (total.has_normals ? 12u : 0u) + (total.has_uvs ? 8u : 0u);
+    bool plausible = total.vertex_count <= 0xfffffffeu && total.triangle_count <= 0xfffffffeu &&
+                     sizeof total + total.vertex_count * each + total.triangle_count * 12u == bytes->size;
+    if (!plausible)
+    {
+        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "the importer sent inconsistent counts");
+    }
+    ty_mesh* mesh = ty_mesh_create((uint32_t)total.vertex_count, (uint32_t)total.triangle_count);
+    if (!mesh)
+    {
+        return ty_error_set_at(error, TY_NO_MEMORY, path, 0, 0, "no memory for its mesh");
+    }
+    from = take(from, mesh->positions, 12 * total.vertex_count);
+    if (total.has_normals)
+    {
+        from = take(from, mesh->normals, 12 * total.vertex_count);
+    }
+    if (total.has_uvs)
+    {
+        mesh->uvs = TY_ALLOC(ty_vec2, total.vertex_count);
+        from = take(from, mesh->uvs, 8 * total.vertex_count);
+    }
+    take(from, mesh->triangles, 12 * total.triangle_count);
+    ty_status status = ty_mesh_validate(mesh, path, error);
+    if (status != TY_OK)
+    {
+        ty_mesh_destroy(mesh);
+        return status;
+    }
+    ty_mesh_compute_welds(mesh);
+    if (!total.has_normals)
+    {
+        ty_mesh_compute_normals(mesh, CREASE);
+    }
+    ty_mesh_compute_bounds(mesh);
+    *out = mesh;
+    return TY_OK;
+}
+
+ty_status mesh_import(const char* path, ty_mesh** out, ty_error* error)
+{
+    *out = NULL;
+    ty_child_def def = {.memory_bytes = 0, .seconds = 60, .max_output = 0};
+    ty_bytes bytes = {0};
+    ty_status status = ty_child_run(&def, import_in_child, path, &bytes, error);
+    if (status != TY_OK)
+    {
+        char reason[sizeof error->text];
+        memcpy(reason, error->text, sizeof reason);
+        return ty_error_set_at(error, status, path, 0, 0, "%.900s", reason);
+    }
+    status = receive(path, &bytes, out, error);
+    ty_bytes_term(&bytes);
+    return status;
+}
