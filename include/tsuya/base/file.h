@@ -26,11 +26,13 @@ typedef struct ty_atomic_file
     int slot;                    // in the table of pending files
 } ty_atomic_file;
 
-// Fails early when the folder is missing or not writable or path is a directory. The temporary exists (empty) afterwards.
+// Fails early when the folder is missing or not writable or path is a directory, a device or a pipe. A link is followed.
+// The temporary exists (empty) afterwards. At most 64 are pending at a time. Callable from any thread.
 TY_CHECKED ty_status ty_atomic_begin(ty_atomic_file* file, const char* path, ty_error* error);
-TY_CHECKED ty_status ty_atomic_commit(ty_atomic_file* file, ty_error* error); // fsync, rename, fsync of the folder
-void ty_atomic_abort(ty_atomic_file* file);                                   // removes the temporary
-void ty_atomic_abort_all(void);                                               // async-signal-safe
+// fsync, rename, fsync of the folder. On failure the temporary is gone and the old file as it was.
+TY_CHECKED ty_status ty_atomic_commit(ty_atomic_file* file, ty_error* error);
+void ty_atomic_abort(ty_atomic_file* file); // removes the temporary; harmless after a commit or a failed begin
+void ty_atomic_abort_all(void);             // async-signal-safe; removes only what this process began
 
 TY_CHECKED ty_status ty_file_write(const char* path, const void* bytes, size_t size, ty_error* error); // atomic
 TY_CHECKED ty_status ty_folder_create(const char* path, ty_error* error); // with parents; existing is fine
@@ -38,12 +40,14 @@ TY_CHECKED ty_status ty_folder_create(const char* path, ty_error* error); // wit
 bool ty_file_exists(const char* path); // a regular file
 bool ty_folder_exists(const char* path);
 const char* ty_path_extension(const char* path);                      // "exr", without the dot; "" if none
+// Paths that do not fit out become the empty path, which names nothing.
 void ty_path_folder(const char* path, char out[TY_PATH_MAX]);         // "." if none
 void ty_path_join(const char* folder, const char* name, char out[TY_PATH_MAX]); // name absolute: name alone
 
 // Runs fn in a child process with limits: for importers of foreign code. What fn writes to output_fd becomes *output
 // (at most max_output bytes). A crash, limit or timeout is TY_BAD_FILE with the reason; a failure of fn brings its
-// ty_error. fn must not touch threads. Memory limits are not applied under AddressSanitizer.
+// ty_error. A cancel request ends the child with TY_INTERRUPTED or TY_TERMINATED. fn must not touch threads; what it
+// prints on standard output is dropped. def NULL = all defaults. Memory limits are not applied under AddressSanitizer.
 typedef struct ty_child_def
 {
     size_t memory_bytes; // address space above the present; 0 = 4 GiB

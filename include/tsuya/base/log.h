@@ -19,7 +19,8 @@ ty_log_level ty_log_get_level(void);
 void ty_log(ty_log_level level, const char* format, ...) TY_PRINTF(2, 3);
 void ty_log_error(const ty_error* error); // at TY_LOG_ERROR, with its place
 
-// Progress of one long task: a bar with percent and time to go on a terminal, a line every 5 % otherwise.
+// Progress of one long task: a bar with percent and time to go on a terminal, a line every 5 % otherwise; its end says
+// the time taken. Nothing below TY_LOG_INFO.
 typedef enum ty_progress_style
 {
     TY_PROGRESS_AUTO,

@@ -7,7 +7,8 @@
 typedef struct ty_workers ty_workers; // opaque
 
 // thread_count 0 = all cores (at most 256). The calling thread is worker 0. Flush-to-zero is set on every worker,
-// the caller included, while it runs a range. Waiting is passive.
+// the caller included, while it runs a range. Waiting is passive. TY_USAGE for a count out of range, TY_NO_MEMORY when
+// the system starts no more threads; *out is NULL then.
 TY_CHECKED ty_status ty_workers_create(int thread_count, ty_workers** out, ty_error* error);
 void ty_workers_destroy(ty_workers* workers); // NULL is allowed
 int ty_workers_count(const ty_workers* workers);
