@@ -74,6 +74,15 @@ static bool scatter(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf*
     return true;
 }
 
+// Beer's law over a way through the medium behind a surface.
+static void absorb(path* p, ty_rgb absorption, float distance)
+{
+    if (ty_rgb_is_black(absorption))
+        return;
+    p->beta = ty_rgb_mul(p->beta, (ty_rgb){ty_exp(-absorption.r * distance), ty_exp(-absorption.g * distance),
+                                           ty_exp(-absorption.b * distance)});
+}
+
 void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray ray, ty_counters* counters,
                     ty_film_sample* out)
 {
@@ -95,6 +104,8 @@ void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray r
         ty_material_prepare(scene->materials[scene->objects[hit.object].material], &scene->shading, &point,
                             ty_neg(p.ray.direction), &bsdf);
         counters->path_vertices++;
+        if (!bsdf.entering)
+            absorb(&p, ty_bsdf_absorption(&bsdf), hit.t);
         out->radiance = ty_rgb_add(out->radiance, ty_rgb_mul(p.beta, bsdf.emission));
         if (p.bounce == 0)
             ty_integrator_record(in, &bsdf, out);
