@@ -126,6 +126,7 @@ typedef struct ty_scene
     const char* recipe;    // complete text of the scene: variables, overrides, includes and recipes resolved
     const char* overrides; // "-D a=b --set c=d", as given; "" if none
     char hash[33];         // of the recipe and of every file that went in
+    struct ty_scene_resources* resources; // private: meshes and aggregates
     // statistics of loading, seconds and counts
     double load_seconds, asset_seconds, build_seconds;
     int assets_made, assets_cached;
@@ -151,6 +152,9 @@ typedef struct ty_scene_options
 // path: a scene file or a folder with scene.yaml. On failure *out is NULL and errors holds every mistake found.
 TY_CHECKED ty_status ty_scene_load(const char* path, const ty_scene_options* options, ty_scene** out,
                                    ty_error_list* errors);
+// The same from memory, e.g. the recipe of a picture. name stands in messages; files are found from its folder.
+TY_CHECKED ty_status ty_scene_load_memory(const char* name, const void* bytes, size_t size,
+                                          const ty_scene_options* options, ty_scene** out, ty_error_list* errors);
 void ty_scene_destroy(ty_scene* scene); // NULL is allowed
 
 // Makes the asset of a recipe file and writes it to output (".glb"), without the cache.

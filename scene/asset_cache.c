@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Made assets on disk, named by the hash of everything that went into them. What is cached and what was just made are
+// both read back from the file, so that they cannot differ.
+#include "loader.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <tsuya/base/log.h>
+
+static ty_status cache_folder(const ty_scene_options* options, char out[TY_PATH_MAX], ty_error* error)
+{
+    const char *own = getenv("TSUYA_CACHE"), *xdg = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    if (options->cache_folder)
+        ty_path_join(".", options->cache_folder, out);
+    else if (own && own[0])
+        ty_path_join(".", own, out);
+    else if (xdg && xdg[0])
+        ty_path_join(xdg, "tsuya", out);
+    else if (home && home[0])
+        ty_path_join(home, ".cache/tsuya", out);
+    else
+        return ty_error_set(error, TY_BAD_FILE, "no folder for made assets: set TSUYA_CACHE");
+    return ty_folder_create(out, error);
+}
+
+// A file that is there but cannot be read as what it should be is made anew.
+static bool read_cached(const char* path, const char* key, const char* name, ty_aggregate** out)
+{
+    ty_error error;
+    if (!ty_file_exists(path))
+        return false;
+    if (ty_aggregate_read(path, NULL, out, &error) == TY_OK)
+    {
+        if ((*out)->hash && strcmp((*out)->hash, key) == 0)
+            return true;
+        ty_aggregate_destroy(*out);
+        *out = NULL;
+        (void)ty_error_set(&error, TY_BAD_FILE, "it holds another asset");
+    }
+    ty_log(TY_LOG_WARNING, "asset '%s': the cached file is damaged and is made again: %s", name, error.text);
+    return false;
+}
+
+static ty_status make(const ty_recipe* recipe, const char* name, const char* key, const char* path, ty_workers* workers,
+                      ty_error* error)
+{
+    ty_aggregate* made = NULL;
+    ty_status status = ty_recipe_run(recipe, key, workers, &made, error);
+    if (status == TY_NOT_AT_REST && made)
+    {
+        ty_log(TY_LOG_WARNING, "asset '%s' did not come to rest: %s", name, error->text);
+        status = TY_OK;
+    }
+    if (status == TY_OK)
+        status = ty_aggregate_write(path, made, error);
+    ty_aggregate_destroy(made);
+    return status;
+}
+
+ty_status ty_asset_cache_get(ty_loader* loader, const char* name, const ty_recipe* recipe, ty_aggregate** out,
+                             ty_error* error)
+{
+    char folder[TY_PATH_MAX], path[TY_PATH_MAX], file[64], key[33];
+    double start = ty_time_now();
+    ty_status status = ty_recipe_key(recipe, &loader->files, key, error);
+    if (status == TY_OK)
+        status = cache_folder(loader->options, folder, error);
+    if (status != TY_OK)
+        return status;
+    snprintf(file, sizeof(file), "%s.glb", key);
+    ty_path_join(folder, file, path);
+    if (read_cached(path, key, name, out))
+    {
+        ++loader->scene->assets_cached;
+        ty_log(TY_LOG_INFO, "asset '%s': %u instances from the cache, %.1f s", name, (*out)->instance_count,
+               ty_time_now() - start);
+        return TY_OK;
+    }
+    status = make(recipe, name, key, path, loader->options->workers, error);
+    if (status == TY_OK)
+        status = ty_aggregate_read(path, NULL, out, error);
+    if (status != TY_OK)
+        return status;
+    ++loader->scene->assets_made;
+    ty_log(TY_LOG_INFO, "asset '%s': %u instances made, %.1f s (kept as %s)", name, (*out)->instance_count,
+           ty_time_now() - start, path);
+    return TY_OK;
+}

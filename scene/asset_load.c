@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files to memory: textures, meshes, shapes, aggregates; recipes through the cache.
+#include "loader.h"
+#include <stdio.h>
+#include <string.h>
+#include <tsuya/base/log.h>
+#include <tsuya/geometry/mesh_file.h>
+
+#define CURVATURE_SMOOTHING 2
+#define CHECK_DIVISIONS 16 // a shape made only to see whether its sizes are possible
+
+void ty_load_textures(ty_loader* loader)
+{
+    ty_scene* scene = loader->scene;
+    scene->textures = TY_ARENA_ALLOC(loader->arena, ty_texture*, scene->texture_count);
+    scene->light_images = TY_ARENA_ALLOC(loader->arena, ty_texture*, scene->light_count);
+    for (int i = 0; i < scene->texture_count; ++i)
+    {
+        ty_error error;
+        const ty_texture_entry* entry = &loader->textures[i];
+        if (ty_texture_create(&entry->def, scene->color, &scene->textures[i], &error) != TY_OK)
+            ty_report_error(loader->errors, entry->place, "texture", &error);
+    }
+    for (int i = 0; i < scene->light_count; ++i)
+        if (loader->light_textures[i] >= 0)
+            scene->light_images[i] = scene->textures[loader->light_textures[i]];
+}
+
+// What shading and tracing expect of every mesh.
+static void complete_mesh(ty_mesh* mesh)
+{
+    if (!mesh->welds)
+        ty_mesh_compute_welds(mesh);
+    if (!mesh->curvature_1)
+        ty_mesh_compute_curvature(mesh, CURVATURE_SMOOTHING);
+}
+
+static void keep_mesh(ty_loader* loader, ty_mesh* mesh)
+{
+    complete_mesh(mesh);
+    struct ty_scene_resources* resources = loader->scene->resources;
+    resources->meshes[resources->mesh_count++] = mesh;
+}
+
+static void keep_aggregate(ty_loader* loader, ty_aggregate* aggregate)
+{
+    for (int i = 0; i < aggregate->prototype_count; ++i)
+        complete_mesh(aggregate->prototypes[i]);
+    struct ty_scene_resources* resources = loader->scene->resources;
+    resources->aggregates[resources->aggregate_count++] = aggregate;
+}
+
+// Assets of the same file share one mesh.
+static void load_mesh(ty_loader* loader, ty_asset* asset)
+{
+    for (int i = 0; i < loader->asset_count && !asset->mesh; ++i)
+        if (loader->assets[i].kind == TY_ASSET_MESH && strcmp(loader->assets[i].path, asset->path) == 0)
+            asset->mesh = loader->assets[i].mesh;
+    ty_error error;
+    if (asset->mesh)
+        return;
+    if (ty_mesh_read(asset->path, &asset->mesh, &error) == TY_OK)
+        keep_mesh(loader, asset->mesh);
+    else
+        ty_report_error(loader->errors, asset->place, "mesh", &error);
+}
+
+static void load_shape(ty_loader* loader, ty_asset* asset)
+{
+    ty_error error;
+    ty_shape_def def = asset->shape;
+    if (loader->options->check_only && def.divisions > CHECK_DIVISIONS)
+        def.divisions = CHECK_DIVISIONS;
+    if (ty_shape_create(&def, &asset->mesh, &error) == TY_OK)
+        keep_mesh(loader, asset->mesh);
+    else
+        ty_report_error(loader->errors, asset->place, "shape", &error);
+}
+
+static void load_aggregate(ty_loader* loader, ty_asset* asset)
+{
+    ty_error error;
+    const ty_mesh* prototype = asset->prototype >= 0 ? loader->assets[asset->prototype].mesh : NULL;
+    if (asset->prototype >= 0 && !prototype)
+        return; // its own error is reported
+    if (ty_aggregate_read(asset->path, prototype, &asset->aggregate, &error) == TY_OK)
+        keep_aggregate(loader, asset->aggregate);
+    else
+        ty_report_error(loader->errors, asset->place, "aggregate", &error);
+}
+
+static void load_recipe(ty_loader* loader, ty_asset* asset)
+{
+    ty_error error;
+    if (loader->options->check_only)
+        return;
+    if (ty_asset_cache_get(loader, asset->name, &asset->recipe, &asset->aggregate, &error) == TY_OK)
+        keep_aggregate(loader, asset->aggregate);
+    else if (error.status == TY_INTERRUPTED || error.status == TY_TERMINATED)
+        ty_error_list_add(loader->errors, &error);
+    else
+        ty_report_error(loader->errors, asset->place, "recipe", &error);
+}
+
+static bool is_wanted(const ty_loader* loader, const ty_asset* asset)
+{
+    return asset->used || loader->options->check_only;
+}
+
+static void load_meshes(ty_loader* loader)
+{
+    for (int i = 0; i < loader->asset_count; ++i)
+    {
+        ty_asset* asset = &loader->assets[i];
+        if (is_wanted(loader, asset) && asset->kind == TY_ASSET_MESH)
+            load_mesh(loader, asset);
+        else if (is_wanted(loader, asset) && asset->kind == TY_ASSET_SHAPE)
+            load_shape(loader, asset);
+    }
+}
+
+// Textures of assets that no material uses are looked at when only checking.
+static void check_unused_textures(ty_loader* loader)
+{
+    for (int i = 0; i < loader->asset_count; ++i)
+    {
+        ty_asset* asset = &loader->assets[i];
+        if (asset->kind != TY_ASSET_TEXTURE || asset->texture >= 0)
+            continue;
+        ty_texture_def def = {asset->path, asset->texture_def.color_space, (ty_wrap)asset->texture_def.wrap};
+        ty_texture* texture = NULL;
+        ty_error error;
+        if (ty_texture_create(&def, loader->scene->color, &texture, &error) != TY_OK)
+            ty_report_error(loader->errors, asset->place, "texture", &error);
+        ty_texture_destroy(texture);
+    }
+}
+
+void ty_load_assets(ty_loader* loader)
+{
+    double start = ty_time_now();
+    struct ty_scene_resources* resources = loader->scene->resources;
+    resources->meshes = TY_ARENA_ALLOC(loader->arena, ty_mesh*, loader->asset_count);
+    resources->aggregates = TY_ARENA_ALLOC(loader->arena, ty_aggregate*, loader->asset_count);
+    int before = loader->errors->count;
+    load_meshes(loader);
+    if (loader->options->check_only && loader->scene->color)
+        check_unused_textures(loader);
+    for (int i = 0; i < loader->asset_count; ++i)
+        if (is_wanted(loader, &loader->assets[i]) && loader->assets[i].kind == TY_ASSET_AGGREGATE)
+            load_aggregate(loader, &loader->assets[i]);
+    // making an asset may take minutes: not for a scene that will not load anyway
+    for (int i = 0; i < loader->asset_count && loader->errors->count == before; ++i)
+        if (is_wanted(loader, &loader->assets[i]) && loader->assets[i].kind == TY_ASSET_RECIPE)
+            load_recipe(loader, &loader->assets[i]);
+    loader->scene->asset_seconds = ty_time_now() - start;
+}

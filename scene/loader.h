@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// The state of loading one scene or recipe. Everything here ends with loading, except what goes into the ty_scene.
+#pragma once
+#include "document.h"
+#include "params_read.h"
+#include "scene_params.h"
+#include <tsuya/generate/asset.h>
+#include <tsuya/geometry/shape.h>
+#include <tsuya/scene/scene.h>
+
+// What `kind: ...` mappings become.
+typedef struct ty_recipe
+{
+    const ty_generator* generator;
+    void* def;
+    ty_node* node;              // as read: its canonical text is the recipe
+    int files_begin, files_end; // entries that it names
+} ty_recipe;
+
+typedef enum ty_asset_kind
+{
+    TY_ASSET_NONE, // wrong in the file, reported
+    TY_ASSET_MESH,
+    TY_ASSET_SHAPE,
+    TY_ASSET_TEXTURE,
+    TY_ASSET_AGGREGATE, // a file
+    TY_ASSET_RECIPE,
+} ty_asset_kind;
+
+typedef struct ty_asset
+{
+    const char* name;
+    ty_asset_kind kind;
+    ty_place place; // of the name of the file, or of the value
+    const char* path;
+    ty_shape_def shape;
+    ty_recipe recipe;
+    int prototype; // AGGREGATE: asset index or -1
+    int texture;   // TEXTURE: index into the scene's textures, -1 until used
+    ty_texture_asset_def texture_def;
+    bool used;
+    ty_mesh* mesh;           // once loaded
+    ty_aggregate* aggregate; // once loaded
+} ty_asset;
+
+typedef struct ty_attribute_use
+{
+    int material, attribute;
+    ty_place place;
+} ty_attribute_use;
+
+typedef struct ty_object_entry
+{
+    ty_object_def def;
+    ty_place place;
+    int asset, material; // -1 = wrong, reported
+    ty_affine transform;
+} ty_object_entry;
+
+typedef struct ty_texture_entry
+{
+    ty_texture_def def;
+    ty_place place;
+} ty_texture_entry;
+
+// What a scene owns besides its public arrays.
+struct ty_scene_resources
+{
+    ty_mesh** meshes;
+    ty_aggregate** aggregates;
+    int mesh_count, aggregate_count;
+    uint32_t depth_field_count;
+};
+
+typedef struct ty_loader
+{
+    const ty_scene_options* options;
+    ty_error_list* errors;
+    ty_arena* arena; // of the scene
+    ty_tree tree;    // in an arena of its own
+    ty_files files;
+    ty_reader reader;
+    ty_node* root;
+    ty_variables* variables;
+    ty_variables* defines; // -D names that the scene itself does not know: recipes may
+    ty_scene* scene;
+    ty_node *asset_map, *material_map; // NULL = none
+    ty_asset* assets;
+    int asset_count;
+    ty_texture_entry* textures; // [texture_capacity], count in the scene
+    int texture_capacity;
+    ty_attribute_use* uses;
+    int use_count, use_capacity;
+    int current_material; // while its table is read
+    bool* textured;       // [material_count]
+    ty_object_entry* objects;
+    int* light_textures; // [light_count], -1 = none
+    bool is_recipe;      // the root is a recipe, not a scene
+} ty_loader;
+
+// loader.c
+// With an empty scene, which the caller destroys or keeps.
+ty_loader* ty_loader_create(const char* folder, const ty_scene_options* options, ty_error_list* errors);
+void ty_loader_destroy(ty_loader* loader); // not the scene
+// The tree in loader->root made final: version, overrides, variables, recipe files in place. False when reading the
+// tables makes no sense any more.
+bool ty_loader_resolve(ty_loader* loader);
+ty_status ty_loader_status(const ty_error_list* errors, int first); // of the errors from first on
+// Room for one more item; the old array stays in the arena.
+void* ty_loader_grow(ty_arena* arena, void* items, int count, int* capacity, size_t size);
+ty_node* ty_section(ty_loader* loader, const char* name,
+                    ty_node_kind kind); // NULL if absent, empty or wrong (reported)
+
+// override.c: `path=value` on the tree; early: those of vars and search, which others depend on, else the rest.
+void ty_override_sets(ty_loader* loader, bool early);
+void ty_override_variables(ty_loader* loader); // -D
+void ty_override_check_defines(ty_loader* loader);
+const char* ty_override_text(ty_arena* arena, const ty_scene_options* options); // as given, in one line
+
+// recipe.c
+bool ty_recipe_is_file(const ty_node* node);              // a scalar that names .yaml, .yml or .json
+void ty_recipe_inline(ty_loader* loader, ty_node** slot); // the file's mapping in place of its name
+bool ty_recipe_read(ty_loader* loader, ty_node* node, ty_recipe* recipe);
+char* ty_recipe_text(const ty_recipe* recipe); // a complete recipe file; caller frees
+// Runs the generator and gives the result its recipe and hash.
+TY_CHECKED ty_status ty_recipe_run(const ty_recipe* recipe, const char* key, ty_workers* workers, ty_aggregate** out,
+                                   ty_error* error);
+TY_CHECKED ty_status ty_recipe_key(const ty_recipe* recipe, const ty_files* files, char key[33], ty_error* error);
+
+// asset_cache.c: the aggregate of a recipe, made at most once per cache folder.
+TY_CHECKED ty_status ty_asset_cache_get(ty_loader* loader, const char* name, const ty_recipe* recipe,
+                                        ty_aggregate** out, ty_error* error);
+
+// scene_assets.c, scene_materials.c, scene_lights.c, scene_objects.c: sections of the file to definitions
+void ty_read_assets(ty_loader* loader);
+int ty_asset_find(ty_loader* loader, const ty_node* name); // index; -1 after a report
+void ty_read_materials(ty_loader* loader);
+void ty_read_view(ty_loader* loader); // film, camera, render
+void ty_read_lights(ty_loader* loader);
+void ty_read_objects(ty_loader* loader);
+// Index of a texture by file, space and wrap; the same for equal ones.
+int ty_texture_index(ty_loader* loader, const ty_texture_def* def, ty_place place);
+
+// asset_load.c: files to memory (everything named when only checking, else what objects use)
+void ty_load_textures(ty_loader* loader);
+void ty_load_assets(ty_loader* loader);
+// scene_world.c: attributes, objects, trees, depth fields, the shading context
+void ty_build_attributes(ty_loader* loader);
+void ty_build_world(ty_loader* loader);

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables of objects and assets.
+#include "scene_params.h"
+
+static void object_default(void* def)
+{
+    *(ty_object_def*)def = (ty_object_def){.scale = {1.0f, 1.0f, 1.0f}};
+}
+
+static void mesh_default(void* def)
+{
+    *(ty_mesh_asset_def*)def = (ty_mesh_asset_def){0};
+}
+
+static void texture_default(void* def)
+{
+    *(ty_texture_asset_def*)def = (ty_texture_asset_def){.wrap = TY_WRAP_REPEAT};
+}
+
+static void aggregate_default(void* def)
+{
+    *(ty_aggregate_asset_def*)def = (ty_aggregate_asset_def){0};
+}
+
+static const ty_param object_rows[] = {
+    {"name", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_object_def, name), "for messages, ids and --set",
+     false},
+    {"mesh", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_object_def, mesh), "a mesh or shape asset", false},
+    {"aggregate", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_object_def, aggregate), "an aggregate asset",
+     false},
+    {"material", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_object_def, material), "name of a material", true},
+    {"translate", TY_PARAM_FLOAT3, "m", -1e9, 1e9, NULL, NULL, offsetof(ty_object_def, translate), "applied last",
+     false},
+    {"rotate", TY_PARAM_FLOAT3, "deg", -36000, 36000, NULL, NULL, offsetof(ty_object_def, rotate),
+     "about x, then y, then z", false},
+    {"scale", TY_PARAM_FLOAT3, "", -1e9, 1e9, NULL, NULL, offsetof(ty_object_def, scale),
+     "applied first; one number for all three", false},
+};
+
+static const ty_param mesh_rows[] = {
+    {"mesh", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_mesh_asset_def, mesh), ".ply .obj .stl .fbx .dae .off",
+     true},
+};
+
+static const char* const wraps[] = {"repeat", "clamp", "mirror", NULL};
+
+static const ty_param texture_rows[] = {
+    {"texture", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_texture_asset_def, texture), "an image file", true},
+    {"color_space", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_texture_asset_def, color_space),
+     "of the image; guessed from the file if not given; raw = data", false},
+    {"wrap", TY_PARAM_ENUM, "", 0, 0, wraps, NULL, offsetof(ty_texture_asset_def, wrap), "outside 0..1", false},
+};
+
+static const ty_param aggregate_rows[] = {
+    {"aggregate", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_aggregate_asset_def, aggregate),
+     "a recipe file (.yaml), a recipe in place, a .glb of instances, or .ply points", true},
+    {"prototype", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_aggregate_asset_def, prototype),
+     "for .ply points: the mesh or shape asset that stands at each", false},
+};
+
+static const ty_param_table object_table = {"object",
+                                            "One entry of the list `objects`: a mesh or an aggregate.",
+                                            sizeof(ty_object_def),
+                                            object_default,
+                                            object_rows,
+                                            TY_PARAM_COUNT(object_rows)};
+static const ty_param_table mesh_table = {"asset.mesh", "A mesh file.", sizeof(ty_mesh_asset_def),
+                                          mesh_default, mesh_rows,      TY_PARAM_COUNT(mesh_rows)};
+static const ty_param_table texture_table = {
+    "asset.texture", "An image for inputs of materials.", sizeof(ty_texture_asset_def), texture_default,
+    texture_rows,    TY_PARAM_COUNT(texture_rows)};
+static const ty_param_table aggregate_table = {
+    "asset.aggregate", "Many instances of a few meshes.", sizeof(ty_aggregate_asset_def), aggregate_default,
+    aggregate_rows,    TY_PARAM_COUNT(aggregate_rows)};
+
+const ty_param_table* ty_object_params(void)
+{
+    return &object_table;
+}
+
+const ty_param_table* ty_mesh_asset_params(void)
+{
+    return &mesh_table;
+}
+
+const ty_param_table* ty_texture_asset_params(void)
+{
+    return &texture_table;
+}
+
+const ty_param_table* ty_aggregate_asset_params(void)
+{
+    return &aggregate_table;
+}

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Colours in their three spellings, and inputs: a constant, possibly times a texture or an attribute.
+#include "number.h"
+#include "params_read.h"
+#include <ctype.h>
+#include <string.h>
+
+static int hex_digit(char c)
+{
+    return isdigit((unsigned char)c) ? c - '0' : tolower((unsigned char)c) - 'a' + 10;
+}
+
+static bool parse_hex(const char* text, ty_rgb* out)
+{
+    if (text[0] != '#' || strlen(text) != 7 || strspn(text + 1, "0123456789abcdefABCDEF") != 6)
+        return false;
+    float value[3];
+    for (int i = 0; i < 3; ++i)
+        value[i] = (float)(hex_digit(text[1 + 2 * i]) * 16 + hex_digit(text[2 + 2 * i])) / 255.0f;
+    *out = ty_rgb_make(value[0], value[1], value[2]);
+    return true;
+}
+
+// To ACEScg; what falls a rounding beyond the row's bounds comes back to them.
+static bool convert(ty_reader* reader, const ty_node* node, const ty_param* row, const char* space, ty_rgb* value)
+{
+    ty_error error;
+    if (reader->color && ty_color_to_acescg(reader->color, space, value, &error) != TY_OK)
+    {
+        ty_report(reader->errors, node->place, TY_BAD_INPUT, "'%s': colour space '%.100s': %.600s", row->name, space,
+                  error.text);
+        return false;
+    }
+    if (row->minimum != 0.0 || row->maximum != 0.0)
+    {
+        float low = (float)row->minimum, high = (float)row->maximum;
+        *value =
+            ty_rgb_make(ty_clamp(value->r, low, high), ty_clamp(value->g, low, high), ty_clamp(value->b, low, high));
+    }
+    return true;
+}
+
+static bool read_plain_rgb(ty_reader* reader, const ty_node* node, const ty_param* row, ty_rgb* out)
+{
+    float value[3];
+    if (node->kind == TY_NODE_SCALAR)
+    {
+        if (!ty_param_read_number(reader, node, row, &value[0]))
+            return false;
+        *out = ty_rgb_grey(value[0]);
+        return true;
+    }
+    if (!ty_param_read_numbers(reader, node, row, value, 3))
+        return false;
+    *out = ty_rgb_make(value[0], value[1], value[2]);
+    return true;
+}
+
+bool ty_param_read_rgb(ty_reader* reader, ty_node* node, const ty_param* row, ty_rgb* out)
+{
+    static const char* const keys[] = {"color", "space", NULL};
+    if (node->kind == TY_NODE_SCALAR && node->text[0] == '#')
+    {
+        if (parse_hex(node->text, out))
+            return convert(reader, node, row, "srgb_texture", out);
+        ty_param_report_type(reader, node, row);
+        return false;
+    }
+    if (node->kind != TY_NODE_MAP)
+        return read_plain_rgb(reader, node, row, out);
+    if (!ty_params_check_keys(reader, node, keys, "a colour"))
+        return false;
+    ty_node *color = ty_node_get(node, "color"), *space = ty_node_get(node, "space");
+    if (!color || (space && (space->kind != TY_NODE_SCALAR || !space->text[0])))
+    {
+        ty_param_report_type(reader, color ? space : node, row);
+        return false;
+    }
+    if (!read_plain_rgb(reader, color, row, out))
+        return false;
+    return !space || convert(reader, space, row, space->text, out);
+}
+
+// value, or color and space, of an input written as a mapping.
+static bool read_input_value(ty_reader* reader, ty_node* node, const ty_param* row, ty_input* out)
+{
+    ty_node* value = ty_node_get(node, "value");
+    if (value && row->type == TY_PARAM_COLOR_INPUT)
+        return ty_param_read_rgb(reader, value, row, &out->value);
+    float number = (float)ty_unit_scale(row->unit); // 1 in the written unit
+    bool good = !value || ty_param_read_number(reader, value, row, &number);
+    out->value = ty_rgb_grey(number);
+    return good;
+}
+
+static bool read_factor(ty_reader* reader, const ty_node* map, const char* key, float* out)
+{
+    const ty_param row = {.name = key, .type = TY_PARAM_FLOAT, .unit = ""};
+    const ty_node* node = ty_node_get(map, key);
+    return !node || ty_param_read_number(reader, node, &row, out);
+}
+
+static bool read_input_source(ty_reader* reader, ty_node* node, const ty_param* row, ty_input* out)
+{
+    ty_node *texture = ty_node_get(node, "texture"), *attribute = ty_node_get(node, "attribute");
+    ty_node* name = texture ? texture : attribute;
+    if (texture && attribute)
+    {
+        ty_report(reader->errors, attribute->place, TY_BAD_INPUT, "'%s': either a texture or an attribute, not both",
+                  row->name);
+        return false;
+    }
+    if (!name || !reader->find_texture)
+    {
+        ty_param_report_type(reader, node, row);
+        return false;
+    }
+    if (name->kind != TY_NODE_SCALAR || !name->text[0])
+    {
+        const ty_param named = {.name = texture ? "texture" : "attribute", .type = TY_PARAM_STRING, .unit = ""};
+        ty_param_report_type(reader, name, &named);
+        return false;
+    }
+    const char* text = ty_arena_string(reader->arena, name->text);
+    if (texture)
+    {
+        out->texture = text;
+        out->texture_index = reader->find_texture(reader->context, texture);
+        return out->texture_index >= 0;
+    }
+    out->attribute = text;
+    out->attribute_index = reader->find_attribute(reader->context, attribute);
+    return out->attribute_index >= 0;
+}
+
+bool ty_param_read_input(ty_reader* reader, ty_node* node, const ty_param* row, ty_input* out)
+{
+    static const char* const keys[] = {"texture", "attribute", "value", "scale", "offset", NULL};
+    *out = ty_input_scalar(1.0f);
+    bool is_color = row->type == TY_PARAM_COLOR_INPUT;
+    if (is_color && (node->kind != TY_NODE_MAP || ty_node_find(node, "color") >= 0))
+        return ty_param_read_rgb(reader, node, row, &out->value);
+    if (node->kind != TY_NODE_MAP)
+    {
+        float value = 0.0f;
+        bool good = ty_param_read_number(reader, node, row, &value);
+        out->value = ty_rgb_grey(value);
+        return good;
+    }
+    bool good = ty_params_check_keys(reader, node, keys, row->name);
+    good &= read_input_value(reader, node, row, out);
+    good &= read_factor(reader, node, "scale", &out->scale);
+    good &= read_factor(reader, node, "offset", &out->offset);
+    return read_input_source(reader, node, row, out) && good;
+}

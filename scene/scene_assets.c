@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The section `assets`: what each name stands for, before anything is read or made.
+#include "loader.h"
+#include "nearest.h"
+#include <string.h>
+
+static const char* const kinds[] = {"mesh", "shape", "texture", "aggregate", NULL};
+
+int ty_texture_index(ty_loader* loader, const ty_texture_def* def, ty_place place)
+{
+    ty_scene* scene = loader->scene;
+    for (int i = 0; i < scene->texture_count; ++i)
+    {
+        const ty_texture_def* other = &loader->textures[i].def;
+        bool same_space = def->color_space && other->color_space ? strcmp(def->color_space, other->color_space) == 0
+                                                                 : def->color_space == other->color_space;
+        if (same_space && def->wrap == other->wrap && strcmp(def->path, other->path) == 0)
+            return i;
+    }
+    loader->textures = ty_loader_grow(loader->tree.arena, loader->textures, scene->texture_count,
+                                      &loader->texture_capacity, sizeof(*loader->textures));
+    loader->textures[scene->texture_count] = (ty_texture_entry){*def, place};
+    return scene->texture_count++;
+}
+
+static void read_mesh(ty_loader* loader, ty_node* node, ty_asset* asset)
+{
+    ty_mesh_asset_def def;
+    if (!ty_params_read(&loader->reader, node, ty_mesh_asset_params(), &def, NULL))
+        return;
+    asset->kind = TY_ASSET_MESH;
+    asset->path = def.mesh;
+}
+
+static void read_texture(ty_loader* loader, ty_node* node, ty_asset* asset)
+{
+    if (!ty_params_read(&loader->reader, node, ty_texture_asset_params(), &asset->texture_def, NULL))
+        return;
+    asset->kind = TY_ASSET_TEXTURE;
+    asset->path = asset->texture_def.texture;
+}
+
+static void read_shape(ty_loader* loader, ty_node* node, ty_asset* asset)
+{
+    if (ty_params_read(&loader->reader, node, ty_shape_params(), &asset->shape, NULL))
+        asset->kind = TY_ASSET_SHAPE;
+}
+
+static void read_aggregate(ty_loader* loader, ty_node* node, ty_asset* asset)
+{
+    static const char* const skip[] = {"aggregate", NULL};
+    ty_node* value = ty_node_get(node, "aggregate");
+    ty_node* prototype = ty_node_get(node, "prototype");
+    if (value->kind == TY_NODE_SCALAR)
+    {
+        ty_aggregate_asset_def def;
+        if (!ty_params_read(&loader->reader, node, ty_aggregate_asset_params(), &def, NULL))
+            return;
+        asset->kind = TY_ASSET_AGGREGATE;
+        asset->path = def.aggregate;
+        bool is_points = strcmp(ty_path_extension(def.aggregate), "ply") == 0;
+        if (is_points != (prototype != NULL))
+            ty_report(loader->errors, prototype ? prototype->place : value->place, TY_BAD_INPUT,
+                      is_points ? "points need a 'prototype': the mesh or shape asset that stands at each"
+                                : "'prototype' belongs to .ply points; a .glb brings its own");
+        return;
+    }
+    if (!ty_params_check_keys(&loader->reader, node, skip, "asset.aggregate with a recipe"))
+        return;
+    if (ty_recipe_read(loader, value, &asset->recipe))
+        asset->kind = TY_ASSET_RECIPE;
+}
+
+static void read_asset(ty_loader* loader, ty_node* node, ty_asset* asset)
+{
+    char described[80], nearest[TY_NEAREST_SIZE];
+    const char* kind = NULL;
+    if (node->bad)
+        return;
+    if (node->kind != TY_NODE_MAP)
+    {
+        ty_report(loader->errors, node->place, TY_BAD_INPUT,
+                  "asset '%.100s': expected a mapping with one of: mesh, shape, texture, aggregate, got %s",
+                  asset->name, ty_node_describe(node, described));
+        return;
+    }
+    for (int i = 0; kinds[i]; ++i)
+        if (!kind && ty_node_find(node, kinds[i]) >= 0)
+            kind = kinds[i];
+    if (!kind)
+    {
+        ty_report(loader->errors, node->place, TY_BAD_INPUT,
+                  "asset '%.100s': expected one of the keys mesh, shape, texture, aggregate%s", asset->name,
+                  node->count ? ty_nearest(node->keys[0].text, kinds, 4, nearest) : "");
+        return;
+    }
+    asset->place = ty_node_get(node, kind)->place;
+    if (strcmp(kind, "mesh") == 0)
+        read_mesh(loader, node, asset);
+    else if (strcmp(kind, "shape") == 0)
+        read_shape(loader, node, asset);
+    else if (strcmp(kind, "texture") == 0)
+        read_texture(loader, node, asset);
+    else
+        read_aggregate(loader, node, asset);
+}
+
+static void resolve_prototype(ty_loader* loader, ty_asset* asset, const ty_node* node)
+{
+    const ty_node* name = asset->kind == TY_ASSET_AGGREGATE ? ty_node_get(node, "prototype") : NULL;
+    if (!name)
+        return;
+    asset->prototype = ty_asset_find(loader, name);
+    if (asset->prototype < 0)
+        return;
+    ty_asset_kind kind = loader->assets[asset->prototype].kind;
+    if (kind != TY_ASSET_MESH && kind != TY_ASSET_SHAPE && kind != TY_ASSET_NONE)
+        ty_report(loader->errors, name->place, TY_BAD_INPUT, "'prototype': asset '%.200s' is no mesh or shape",
+                  name->text);
+}
+
+void ty_read_assets(ty_loader* loader)
+{
+    ty_node* map = loader->asset_map = ty_section(loader, "assets", TY_NODE_MAP);
+    loader->asset_count = map ? map->count : 0;
+    loader->assets = TY_ARENA_ALLOC(loader->tree.arena, ty_asset, loader->asset_count);
+    for (int i = 0; i < loader->asset_count; ++i)
+    {
+        ty_asset* asset = &loader->assets[i];
+        asset->name = ty_arena_string(loader->arena, map->keys[i].text);
+        asset->place = map->keys[i].place;
+        asset->prototype = asset->texture = -1;
+        read_asset(loader, map->items[i], asset);
+    }
+    for (int i = 0; i < loader->asset_count; ++i)
+        resolve_prototype(loader, &loader->assets[i], map->items[i]);
+}
+
+int ty_asset_find(ty_loader* loader, const ty_node* name)
+{
+    char nearest[TY_NEAREST_SIZE];
+    int index = name->kind == TY_NODE_SCALAR ? ty_node_find(loader->asset_map, name->text) : -1;
+    if (index < 0 && name->kind == TY_NODE_SCALAR && name->text[0])
+        ty_report(loader->errors, name->place, TY_BAD_INPUT, "no asset '%.200s'%s", name->text,
+                  ty_nearest_key(name->text, loader->asset_map, nearest));
+    return index;
+}

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene from its file to the frozen ty_scene: tree, tables, files, world.
+#include "loader.h"
+#include <string.h>
+#include <tsuya/base/log.h>
+
+#define FORMAT "tsuya scene 1" // in the hash: a scene of another format is another scene
+
+static void check_sections(ty_loader* loader)
+{
+    static const char* const keys[] = {"film", "camera", "render",  "assets", "materials", "objects", "lights",
+                                       "ocio", "tsuya",  "include", "vars",   "search",    NULL};
+    (void)ty_params_check_keys(&loader->reader, loader->root, keys, "a scene"); // reported
+}
+
+static void read_sections(ty_loader* loader)
+{
+    check_sections(loader);
+    ty_read_view(loader);
+    ty_read_assets(loader);
+    ty_read_materials(loader);
+    ty_read_objects(loader);
+    ty_read_lights(loader);
+}
+
+// The text that makes the same scene again, after everything was read: paths are relative to the scene's folder now.
+static void write_recipe(ty_loader* loader)
+{
+    char* body = ty_node_is_empty(loader->root) ? ty_string_copy("") : ty_tree_emit(loader->root);
+    loader->scene->recipe = ty_arena_format(loader->arena, "tsuya: 1\n%s", body);
+    ty_free(body);
+    loader->scene->overrides = ty_override_text(loader->arena, loader->options);
+}
+
+static void hash_scene(ty_loader* loader)
+{
+    ty_error error;
+    ty_hasher* hasher = ty_hasher_create();
+    ty_hasher_add_string(hasher, FORMAT);
+    ty_hasher_add_string(hasher, loader->scene->recipe);
+    for (int i = 0; i < loader->asset_count; ++i)
+        if (loader->assets[i].kind == TY_ASSET_RECIPE)
+            ty_hasher_add_string(hasher, loader->assets[i].recipe.generator->build_id);
+    if (ty_files_add_to_hash(&loader->files, 0, loader->files.count, hasher, &error) != TY_OK)
+        ty_error_list_add(loader->errors, &error);
+    ty_hash_hex(ty_hasher_end(hasher), loader->scene->hash);
+}
+
+// Each stage needs the one before without a mistake; a check goes on to the files to find those mistakes as well.
+static void load_stages(ty_loader* loader, int first)
+{
+    if (!ty_loader_resolve(loader))
+        return;
+    read_sections(loader);
+    bool good = loader->errors->count == first;
+    if (!loader->scene->color || (!good && !loader->options->check_only))
+        return;
+    ty_load_textures(loader);
+    ty_load_assets(loader);
+    ty_build_attributes(loader);
+    if (loader->errors->count > first)
+        return;
+    write_recipe(loader);
+    hash_scene(loader);
+    if (loader->errors->count == first && !loader->options->check_only)
+        ty_build_world(loader);
+}
+
+static ty_status finish(ty_loader* loader, const char* path, double start, int first, ty_scene** out)
+{
+    ty_scene* scene = loader->scene;
+    if (loader->root)
+        load_stages(loader, first);
+    scene->path = ty_arena_string(loader->arena, path);
+    scene->load_seconds = ty_time_now() - start;
+    bool good = loader->root && loader->errors->count == first;
+    ty_status status = good ? TY_OK : ty_loader_status(loader->errors, first);
+    ty_loader_destroy(loader);
+    if (good)
+        *out = scene;
+    else
+        ty_scene_destroy(scene);
+    return status;
+}
+
+ty_status ty_scene_load(const char* path, const ty_scene_options* options, ty_scene** out, ty_error_list* errors)
+{
+    char file[TY_PATH_MAX], folder[TY_PATH_MAX];
+    double start = ty_time_now();
+    *out = NULL;
+    if (ty_folder_exists(path))
+        ty_path_join(path, "scene.yaml", file);
+    else
+        ty_path_join(".", path, file);
+    const char* shown = strncmp(file, "./", 2) == 0 ? file + 2 : file;
+    ty_path_folder(file, folder);
+    int first = errors->count;
+    ty_loader* loader = ty_loader_create(folder, options, errors);
+    loader->root = ty_document_load(&loader->tree, &loader->files, shown, "", NULL);
+    return finish(loader, shown, start, first, out);
+}
+
+ty_status ty_scene_load_memory(const char* name, const void* bytes, size_t size, const ty_scene_options* options,
+                               ty_scene** out, ty_error_list* errors)
+{
+    char folder[TY_PATH_MAX];
+    double start = ty_time_now();
+    *out = NULL;
+    ty_path_folder(name, folder);
+    int first = errors->count;
+    ty_loader* loader = ty_loader_create(folder, options, errors);
+    loader->root = ty_document_parse(&loader->tree, &loader->files, name, bytes, size);
+    return finish(loader, name, start, first, out);
+}
+
+void ty_scene_destroy(ty_scene* scene)
+{
+    if (!scene)
+        return;
+    for (uint32_t i = 0; i < scene->resources->depth_field_count; ++i)
+        ty_depth_field_destroy(scene->depth_fields[i]);
+    ty_world_destroy(scene->world);
+    for (int i = 0; scene->textures && i < scene->texture_count; ++i)
+        ty_texture_destroy(scene->textures[i]);
+    for (int i = 0; scene->materials && i < scene->material_count; ++i)
+        ty_material_destroy(scene->materials[i]);
+    for (int i = 0; i < scene->resources->mesh_count; ++i)
+        ty_mesh_destroy(scene->resources->meshes[i]);
+    for (int i = 0; i < scene->resources->aggregate_count; ++i)
+        ty_aggregate_destroy(scene->resources->aggregates[i]);
+    ty_color_destroy(scene->color);
+    ty_arena_destroy(scene->arena);
+}

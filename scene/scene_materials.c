@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// The section `materials`: definitions read, their textures and attributes resolved, materials created.
+#include "loader.h"
+#include "nearest.h"
+#include <string.h>
+
+static int asset_texture(ty_loader* loader, ty_asset* asset, const ty_node* name)
+{
+    if (asset->kind == TY_ASSET_NONE)
+        return -1; // reported where it is defined; without a texture the material is not made
+    if (asset->kind != TY_ASSET_TEXTURE)
+    {
+        ty_report(loader->errors, name->place, TY_BAD_INPUT, "'texture': asset '%.200s' is no texture", asset->name);
+        return -1;
+    }
+    if (asset->texture < 0)
+    {
+        const ty_texture_asset_def* def = &asset->texture_def;
+        ty_texture_def texture = {def->texture, def->color_space, (ty_wrap)def->wrap};
+        asset->texture = ty_texture_index(loader, &texture, asset->place);
+    }
+    return asset->texture;
+}
+
+// An asset of that name, else a file; a name without a dot or slash can only be meant as an asset.
+static int find_texture(void* context, ty_node* name)
+{
+    ty_loader* loader = context;
+    loader->textured[loader->current_material] = true;
+    int index = ty_node_find(loader->asset_map, name->text);
+    if (index < 0 && !strpbrk(name->text, "./"))
+        return ty_asset_find(loader, name);
+    if (index >= 0)
+        return asset_texture(loader, &loader->assets[index], name);
+    ty_texture_def def = ty_texture_def_default();
+    def.path = ty_files_use(&loader->files, name, "texture");
+    return def.path ? ty_texture_index(loader, &def, name->place) : -1;
+}
+
+static int find_attribute(void* context, const ty_node* name)
+{
+    ty_loader* loader = context;
+    ty_scene* scene = loader->scene;
+    int index = 0;
+    while (index < scene->attribute_count && strcmp(scene->attribute_names[index], name->text) != 0)
+        ++index;
+    if (index == scene->attribute_count)
+    {
+        if (index == 256)
+        {
+            ty_report(loader->errors, name->place, TY_BAD_INPUT, "more than 256 different attributes in a scene");
+            return -1;
+        }
+        if (!scene->attribute_names)
+            scene->attribute_names = TY_ARENA_ALLOC(loader->arena, const char*, 256);
+        scene->attribute_names[scene->attribute_count++] = ty_arena_string(loader->arena, name->text);
+    }
+    loader->uses = ty_loader_grow(loader->tree.arena, loader->uses, loader->use_count, &loader->use_capacity,
+                                  sizeof(*loader->uses));
+    loader->uses[loader->use_count++] = (ty_attribute_use){loader->current_material, index, name->place};
+    return index;
+}
+
+// "kernel: ..." of a material's own check points at its `kernel`, if it is written.
+static void report_impossible(ty_loader* loader, const ty_node* node, const char* name, const ty_error* error)
+{
+    ty_place place = node->place;
+    for (int i = 0; i < node->count; ++i)
+    {
+        size_t length = strlen(node->keys[i].text);
+        if (strncmp(error->text, node->keys[i].text, length) == 0 && strchr(": ", error->text[length]))
+            place = node->items[i]->place;
+    }
+    ty_report(loader->errors, place, error->status, "material '%.100s': %.800s", name, error->text);
+}
+
+static void read_surface(ty_loader* loader, ty_node* node, int index)
+{
+    static const char* const skip[] = {"model", NULL};
+    ty_surface_def def;
+    ty_error error;
+    if (ty_params_read(&loader->reader, node, ty_surface_params(), &def, skip) &&
+        ty_material_create_surface(&def, &loader->scene->materials[index], &error) != TY_OK)
+        report_impossible(loader, node, loader->scene->material_names[index], &error);
+}
+
+static void read_cdrf(ty_loader* loader, ty_node* node, int index)
+{
+    static const char* const skip[] = {"model", NULL};
+    ty_cdrf_def def;
+    ty_error error;
+    if (ty_params_read(&loader->reader, node, ty_cdrf_params(), &def, skip) &&
+        ty_material_create_cdrf(&def, &loader->scene->materials[index], &error) != TY_OK)
+        report_impossible(loader, node, loader->scene->material_names[index], &error);
+}
+
+static void read_material(ty_loader* loader, ty_node* node, int index)
+{
+    static const char* const models[] = {"surface", "cdrf", NULL};
+    const ty_param row = {.name = "model", .type = TY_PARAM_ENUM, .unit = "", .choices = models};
+    char described[80];
+    const char* name = loader->scene->material_names[index];
+    if (node->bad)
+        return;
+    if (node->kind != TY_NODE_MAP)
+    {
+        ty_report(loader->errors, node->place, TY_BAD_INPUT,
+                  "material '%.100s': expected a mapping with 'model', got %s", name,
+                  ty_node_describe(node, described));
+        return;
+    }
+    ty_node* model = ty_node_get(node, "model");
+    int chosen = 0;
+    if (!model)
+        ty_report(loader->errors, node->place, TY_BAD_INPUT,
+                  "material '%.100s': missing key 'model', one of: surface, cdrf", name);
+    else if (ty_param_read(&loader->reader, model, &row, &chosen))
+        (chosen == 0 ? read_surface : read_cdrf)(loader, node, index);
+}
+
+void ty_read_materials(ty_loader* loader)
+{
+    ty_scene* scene = loader->scene;
+    ty_node* map = loader->material_map = ty_section(loader, "materials", TY_NODE_MAP);
+    scene->material_count = map ? map->count : 0;
+    scene->materials = TY_ARENA_ALLOC(loader->arena, ty_material*, scene->material_count);
+    scene->material_names = TY_ARENA_ALLOC(loader->arena, const char*, scene->material_count);
+    loader->textured = TY_ARENA_ALLOC(loader->tree.arena, bool, scene->material_count);
+    loader->reader.find_texture = find_texture;
+    loader->reader.find_attribute = find_attribute;
+    for (int i = 0; i < scene->material_count; ++i)
+    {
+        scene->material_names[i] = ty_arena_string(loader->arena, map->keys[i].text);
+        loader->current_material = i;
+        read_material(loader, map->items[i], i);
+    }
+}

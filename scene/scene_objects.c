@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// The section `objects`: references to assets and materials, and where each object stands.
+#include "loader.h"
+#include "nearest.h"
+#include "number.h"
+#include <string.h>
+
+// One number for all three axes, written out, so that the table sees three.
+static void spread_scale(ty_loader* loader, ty_node* node)
+{
+    int index = ty_node_find(node, "scale");
+    ty_node* one = index < 0 ? NULL : node->items[index];
+    double value = 0.0;
+    if (!one || one->kind != TY_NODE_SCALAR || !ty_number_parse(one->text, &value))
+        return; // what it is instead is reported by the table
+    ty_node* list = ty_node_create(&loader->tree, TY_NODE_LIST, one->place);
+    for (int i = 0; list && i < 3; ++i)
+        ty_node_append(&loader->tree, list, one);
+    if (list)
+        node->items[index] = list;
+}
+
+static bool is_geometry(ty_asset_kind kind, bool wants_aggregate)
+{
+    if (kind == TY_ASSET_NONE)
+        return true; // reported where it is defined
+    return wants_aggregate ? kind == TY_ASSET_AGGREGATE || kind == TY_ASSET_RECIPE
+                           : kind == TY_ASSET_MESH || kind == TY_ASSET_SHAPE;
+}
+
+static void find_asset(ty_loader* loader, const ty_node* node, ty_object_entry* entry)
+{
+    const ty_node *mesh = ty_node_get(node, "mesh"), *aggregate = ty_node_get(node, "aggregate");
+    if (!mesh == !aggregate)
+    {
+        ty_report(loader->errors, aggregate ? aggregate->place : node->place, TY_BAD_INPUT,
+                  mesh ? "either 'mesh' or 'aggregate', not both" : "missing key 'mesh' or 'aggregate' of an object");
+        return;
+    }
+    const ty_node* name = mesh ? mesh : aggregate;
+    entry->asset = ty_asset_find(loader, name);
+    if (entry->asset < 0)
+        return;
+    ty_asset* asset = &loader->assets[entry->asset];
+    asset->used = true;
+    if (asset->prototype >= 0)
+        loader->assets[asset->prototype].used = true;
+    if (!is_geometry(asset->kind, aggregate != NULL))
+        ty_report(loader->errors, name->place, TY_BAD_INPUT, "asset '%.200s' is no %s", asset->name,
+                  mesh ? "mesh or shape" : "aggregate");
+}
+
+static void find_material(ty_loader* loader, const ty_node* node, ty_object_entry* entry)
+{
+    char nearest[TY_NEAREST_SIZE];
+    const ty_node* name = ty_node_get(node, "material");
+    if (!name || name->kind != TY_NODE_SCALAR || !name->text[0])
+        return;
+    entry->material = ty_node_find(loader->material_map, name->text);
+    if (entry->material < 0)
+        ty_report(loader->errors, name->place, TY_BAD_INPUT, "no material '%.200s'%s", name->text,
+                  ty_nearest_key(name->text, loader->material_map, nearest));
+}
+
+static void place_object(ty_loader* loader, const ty_node* node, ty_object_entry* entry)
+{
+    const ty_object_def* def = &entry->def;
+    entry->transform = ty_affine_from_trs(def->translate, ty_quat_euler(def->rotate), def->scale);
+    ty_affine inverse;
+    const ty_node* scale = ty_node_get(node, "scale");
+    if (!ty_affine_invert(&entry->transform, &inverse))
+        ty_report(loader->errors, scale ? scale->place : node->place, TY_BAD_INPUT,
+                  "'scale': zero along an axis would make the object flat");
+}
+
+void ty_read_objects(ty_loader* loader)
+{
+    ty_scene* scene = loader->scene;
+    ty_node* list = ty_section(loader, "objects", TY_NODE_LIST);
+    scene->object_count = list ? list->count : 0;
+    scene->objects = TY_ARENA_ALLOC(loader->arena, ty_scene_object, scene->object_count);
+    loader->objects = TY_ARENA_ALLOC(loader->tree.arena, ty_object_entry, scene->object_count);
+    for (int i = 0; i < scene->object_count; ++i)
+    {
+        ty_object_entry* entry = &loader->objects[i];
+        ty_node* node = list->items[i];
+        entry->place = node->place;
+        entry->asset = entry->material = -1;
+        spread_scale(loader, node);
+        bool good = ty_params_read(&loader->reader, node, ty_object_params(), &entry->def, NULL);
+        if (node->kind != TY_NODE_MAP || node->bad)
+            continue;
+        find_asset(loader, node, entry);
+        find_material(loader, node, entry);
+        if (good)
+            place_object(loader, node, entry);
+        scene->objects[i].name = entry->def.name ? entry->def.name : ty_arena_format(loader->arena, "object%d", i);
+        scene->objects[i].material = (uint32_t)entry->material;
+    }
+}

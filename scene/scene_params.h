@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables of what only scene files know: objects, assets, and which keys belong to which light.
+#pragma once
+#include <tsuya/scene/scene.h>
+
+// An entry of `objects:`.
+typedef struct ty_object_def
+{
+    const char* name;
+    const char* mesh;      // asset
+    const char* aggregate; // asset
+    const char* material;
+    ty_vec3 translate, rotate, scale; // m, radians, 1
+} ty_object_def;
+
+// Entries of `assets:` by their first key.
+typedef struct ty_mesh_asset_def
+{
+    const char* mesh; // path
+} ty_mesh_asset_def;
+
+typedef struct ty_texture_asset_def
+{
+    const char* texture; // path
+    const char* color_space;
+    int wrap; // ty_wrap
+} ty_texture_asset_def;
+
+typedef struct ty_aggregate_asset_def
+{
+    const char* aggregate; // path, or a recipe in place
+    const char* prototype; // asset
+} ty_aggregate_asset_def;
+
+const ty_param_table* ty_object_params(void);
+const ty_param_table* ty_mesh_asset_params(void);
+const ty_param_table* ty_texture_asset_params(void);
+const ty_param_table* ty_aggregate_asset_params(void);
+
+// Whether a key of the light table means anything for a kind of light.
+bool ty_light_has_key(ty_light_kind kind, const char* key);
