@@ -136,3 +136,24 @@ float ty_albedo_row_at(const ty_albedo_row* row, float mu)
         sum += row->weight[k] * ty_lerp(row->slice[k][i], row->slice[k][i + 1], s - (float)i);
     return sum;
 }
+
+static float node_value(const ty_albedo_row* row, int i)
+{
+    float sum = 0.0f;
+    for (int k = 0; k < row->count; k++)
+        sum += row->weight[k] * row->slice[k][i];
+    return sum;
+}
+
+float ty_albedo_row_common(const ty_albedo_row* a, const ty_albedo_row* b)
+{
+    // Trapezoids in s over 4 E_a E_b s^3: the last node counts half.
+    const float h = 1.0f / (MU_NODES - 1);
+    float sum = 0.0f;
+    for (int i = 1; i < MU_NODES; i++)
+    {
+        float s = (float)i * h, end = i == MU_NODES - 1 ? 0.5f : 1.0f;
+        sum += end * 4.0f * h * s * s * s * node_value(a, i) * node_value(b, i);
+    }
+    return sum;
+}

@@ -14,3 +14,6 @@ ty_albedo_row ty_albedo_table_row(const ty_albedo_table* table, float roughness,
 
 // E(mu), 0 <= mu <= 1; linear in sqrt(mu).
 float ty_albedo_row_at(const ty_albedo_row* row, float mu);
+
+// 2 * integral of E_a(mu) E_b(mu) mu: what two layers above one another have in common.
+float ty_albedo_row_common(const ty_albedo_row* a, const ty_albedo_row* b);

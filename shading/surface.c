@@ -61,25 +61,31 @@ static float through_coat(const ty_bsdf* b, float mu_o, float mu_i)
     return 1.0f - ty_max(ty_coat_albedo(b, mu_o), ty_coat_albedo(b, mu_i));
 }
 
-// Coupling of a Lambert base with a reflecting layer above (Kelemen & Szirmay-Kalos 2001): white stays white.
-static float coupling(float e_o, float e_i, float e_average)
-{
-    return (1.0f - e_o) * (1.0f - e_i) / (1.0f - e_average);
-}
-
 static float base_share(const ty_bsdf* b, float mu)
 {
     return b->specular_weight * ty_albedo_row_at(&b->specular_row, mu);
 }
 
+// What both layers let through to or from the base.
+static float through_layers(const ty_bsdf* b, float mu)
+{
+    return (1.0f - ty_coat_albedo(b, mu)) * (1.0f - base_share(b, mu));
+}
+
+// Coupling of the Lambert base with the reflecting layers above it (Kelemen & Szirmay-Kalos 2001), with the average of
+// both together: white stays white.
+static float layer_average(const ty_bsdf* b)
+{
+    float coat = b->coat_weight * b->coat_row.average, base = b->specular_weight * b->specular_row.average,
+          common = 0.0f;
+    if (coat > 0.0f && base > 0.0f)
+        common = b->coat_weight * b->specular_weight * ty_albedo_row_common(&b->coat_row, &b->specular_row);
+    return 1.0f - coat - base + common;
+}
+
 static float diffuse_coupling(const ty_bsdf* b, float mu_o, float mu_i)
 {
-    float k = 1.0f;
-    if (b->coat_weight > 0.0f)
-        k = coupling(ty_coat_albedo(b, mu_o), ty_coat_albedo(b, mu_i), b->coat_weight * b->coat_row.average);
-    if (b->specular_weight > 0.0f && b->specular_row.count > 0)
-        k *= coupling(base_share(b, mu_o), base_share(b, mu_i), b->specular_weight * b->specular_row.average);
-    return k;
+    return through_layers(b, mu_o) * through_layers(b, mu_i) / b->layer_average;
 }
 
 static float diffuse_weight(const ty_bsdf* b)
@@ -106,8 +112,7 @@ static void lobe_albedos(const ty_bsdf* b, float mu, ty_rgb albedo[LOBE_COUNT])
         ty_rgb_scale(ty_rgb_add(ty_rgb_scale(b->specular_tint, (b->inside ? clear : 1.0f - b->metalness) * reflected),
                                 ty_rgb_scale(metal, b->metalness * b->specular_weight)),
                      left);
-    float under = b->inside ? left : left * (1.0f - base_share(b, mu));
-    albedo[LOBE_DIFFUSE] = ty_rgb_scale(b->color, under * diffuse_weight(b));
+    albedo[LOBE_DIFFUSE] = ty_rgb_scale(b->color, through_layers(b, mu) * diffuse_weight(b));
     albedo[LOBE_TRANSMISSION] = ty_rgb_scale(b->transmission, left * clear * (1.0f - reflected));
 }
 
@@ -172,6 +177,7 @@ void ty_surface_prepare(const ty_material* material, const ty_shading_context* c
     if (b->entering && ty_material_is_emissive(material))
         b->emission = ty_rgb_scale(ty_input_color(&s->emission_color, context, p),
                                    ty_max(ty_input_float(&s->emission_luminance, context, p), 0.0f));
+    b->layer_average = layer_average(b);
     choose_probabilities(b, ty_dot(b->wo, b->frame.n));
 }
 
@@ -201,8 +207,8 @@ static ty_rgb eval_reflection(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* p
     }
     if (p[LOBE_DIFFUSE] > 0.0f)
     {
-        float k = b->inside ? 1.0f : diffuse_coupling(b, wo.z, wi.z);
-        f = ty_rgb_add(f, ty_rgb_scale(b->color, k * diffuse_weight(b) * wi.z * TY_INV_PI));
+        float k = diffuse_coupling(b, wo.z, wi.z) * diffuse_weight(b);
+        f = ty_rgb_add(f, ty_rgb_scale(b->color, k * wi.z * TY_INV_PI));
         *pdf += p[LOBE_DIFFUSE] * wi.z * TY_INV_PI;
     }
     return f;

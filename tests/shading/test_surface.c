@@ -205,7 +205,9 @@ static void test_smooth_glass_is_fresnel(void** state)
 static void test_rough_lobes_lose_little(void** state)
 {
     (void)state;
+    // Single scattering alone. At normal incidence on a metal of roughness 1 it is 1 - ln 2 = .307, exactly.
     static const float roughness[] = {0.1f, 0.3f, 0.5f, 0.7f, 1.0f};
+    static const double least[] = {0.995, 0.86, 0.79, 0.64, 0.29};
     for (int i = 0; i < 5; i++)
     {
         ty_surface_def g = glass(roughness[i]), k = metal(roughness[i]);
@@ -214,12 +216,11 @@ static void test_rough_lobes_lose_little(void** state)
         for (int a = 0; a < 4; a++)
         {
             ty_bsdf bg = bsdf_at(mg, angles[a]), bi = bsdf_at(mg, M_PI - angles[a]), bk = bsdf_at(mk, angles[a]);
-            double least = 1.0 - 0.55 * (double)roughness[i];
             float e[3] = {mean_weight(&bg, 100000).g, mean_weight(&bi, 100000).g, mean_weight(&bk, 100000).g};
             print_message("roughness %.1f angle %.2f: glass %.4f, from within %.4f, metal %.4f\n", (double)roughness[i],
                           angles[a], (double)e[0], (double)e[1], (double)e[2]);
             for (int j = 0; j < 3; j++)
-                assert_true((double)e[j] <= 1.005 && (double)e[j] >= least);
+                assert_true((double)e[j] <= 1.005 && (double)e[j] >= least[i]);
         }
         ty_material_destroy(mg);
         ty_material_destroy(mk);

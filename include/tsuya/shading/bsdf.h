@@ -50,6 +50,7 @@ typedef struct ty_bsdf
     float coat_alpha, coat_eta; // alpha 0 = mirror
     ty_albedo_row specular_row; // E of the dielectric specular
     ty_albedo_row coat_row;     // E of the coat
+    float layer_average;        // share of diffuse light that passes coat and specular
     float lobe_probability[4];  // surface: coat, specular, diffuse, transmission; local: coat, cosine, uniform
 
     // cdrf
