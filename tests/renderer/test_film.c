@@ -14,7 +14,7 @@ enum
 
 static ty_film_sample random_sample(ty_rng* rng)
 {
-    float size = ty_rng_float(rng) < 0.1f ? 5000.0f : 1.0f;
+    float size = ty_rng_float(rng) < 0.1f ? 120000.0f : 1.0f; // wide enough to fill every word of the sums
     ty_film_sample s = {.radiance = {size * ty_rng_float(rng), size * ty_rng_float(rng), size * ty_rng_float(rng)}};
     s.hit = s.covered = ty_rng_float(rng) < 0.8f;
     if (s.hit)

@@ -20,6 +20,28 @@ static void fetch(int x, int y, uint32_t sample, uint32_t group, float u[8])
     ty_sampler_8d(&sampler, group, u);
 }
 
+static float sobol_value(uint32_t index, int dimension)
+{
+    uint32_t byte = 0, digits = 0;
+    for (int bit = 0; bit < 8; ++bit)
+        byte |= (index >> bit & 1u) << (7 - bit);
+    for (int bit = 0; bit < 32; ++bit)
+        digits |= (sobol.points[0][byte][dimension] >> bit & 1u) << (31 - bit);
+    return (float)digits * 0x1p-32f;
+}
+
+// Joe and Kuo's published points 5 and 9; their Gray code order makes them indices 6 and 12 here.
+static void test_points_are_those_of_joe_and_kuo(void** state)
+{
+    (void)state;
+    const float fifth[4] = {0.375f, 0.375f, 0.625f, 0.875f}, ninth[4] = {0.1875f, 0.3125f, 0.9375f, 0.4375f};
+    for (int d = 0; d < 4; ++d)
+    {
+        assert_true(sobol_value(6, d) == fifth[d]);
+        assert_true(sobol_value(12, d) == ninth[d]);
+    }
+}
+
 // Every elementary interval of area 2^-k holds exactly one of the first 2^k points.
 static void check_net(int x, int y, uint32_t group, int a, int b, int k)
 {
@@ -146,6 +168,20 @@ static void test_neighbours_are_independent(void** state)
     free(pair);
 }
 
+// Dimensions are scrambled on their own: where their unscrambled digits agree, the results do not.
+static void test_dimensions_are_scrambled_apart(void** state)
+{
+    (void)state;
+    int equal = 0;
+    for (int i = 0; i < 1 << 20; ++i)
+    {
+        float u[8];
+        fetch(i & 1023, i >> 10, 0, 1, u);
+        equal += u[0] == u[1];
+    }
+    assert_true(equal <= 3); // 2^20 / 2^24 by chance; with one scrambling 2 of 2^16 indices give equal numbers
+}
+
 // The scrambling is Owen's: the mean of f over 2^k points varies far less than that of independent points.
 static void test_smooth_integrals_converge_fast(void** state)
 {
@@ -174,6 +210,8 @@ int main(void)
         cmocka_unit_test(test_later_blocks_are_nets),
         cmocka_unit_test(test_is_a_pure_function),
         cmocka_unit_test(test_neighbours_are_independent),
+        cmocka_unit_test(test_points_are_those_of_joe_and_kuo),
+        cmocka_unit_test(test_dimensions_are_scrambled_apart),
         cmocka_unit_test(test_smooth_integrals_converge_fast),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
