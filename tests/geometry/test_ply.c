@@ -79,16 +79,17 @@ static void written_bytes_come_back(void** state)
         HEADER("ascii", "4") "property float weight\n" FACES("2") "0.1 0.2 0.30000001 1\n1 0 0 2\n0 1 "
                                                                   "-1e-20 3\n5 5 5 4\n3 0 1 2\n3 1 3 2\n";
     assert_int_equal(read_text(text, &mesh, &error), TY_OK);
-    mesh->uvs = TY_ALLOC(ty_vec2, 4);
+    uint32_t count = mesh->vertex_count; // the sharp edge has split vertices
+    mesh->uvs = TY_ALLOC(ty_vec2, count);
     mesh->uvs[3] = (ty_vec2){0.25f, 0.75f};
     assert_int_equal(ty_ply_write("round.ply", mesh, &error), TY_OK);
     assert_int_equal(ty_mesh_read("round.ply", &again, &error), TY_OK);
-    assert_memory_equal(mesh->positions, again->positions, 4 * sizeof(ty_vec3));
-    assert_memory_equal(mesh->normals, again->normals, 4 * sizeof(ty_vec3));
-    assert_memory_equal(mesh->uvs, again->uvs, 4 * sizeof(ty_vec2));
+    assert_memory_equal(mesh->positions, again->positions, count * sizeof(ty_vec3));
+    assert_memory_equal(mesh->normals, again->normals, count * sizeof(ty_vec3));
+    assert_memory_equal(mesh->uvs, again->uvs, count * sizeof(ty_vec2));
     assert_memory_equal(mesh->triangles, again->triangles, 2 * sizeof mesh->triangles[0]);
     assert_memory_equal(ty_mesh_find_attribute(mesh, "weight")->values, ty_mesh_find_attribute(again, "weight")->values,
-                        4 * sizeof(float));
+                        count * sizeof(float));
     assert_int_equal(ty_ply_write("round2.ply", again, &error), TY_OK);
     ty_bytes a, b;
     assert_int_equal(ty_file_read("round.ply", 1 << 20, &a, &error), TY_OK);
@@ -121,7 +122,7 @@ static void faults_are_named(void** state)
         {HEADER("ascii", "3") "property float x\n" FACES("1") TRIANGLE, "twice", 8},
         {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n" FACES("1") "0\n3 0 0 0\n", "x, y and z", 7},
         {HEADER("ascii", "180000000") FACES("1") TRIANGLE, "cannot be", 10},
-        {HEADER("ascii", "3") FACES("180000000") TRIANGLE "3 0 1 2\n", "cannot be", 13},
+        {HEADER("ascii", "3") FACES("180000000") TRIANGLE "3 0 1 2\n", "cannot be", 12},
         {HEADER("ascii", "0") FACES("0"), "no vertices", 10},
         {HEADER("ascii", "3") FACES("0") TRIANGLE, "no faces", 0},
         {HEADER("ascii", "3") FACES("1") "0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n", "not a number", 12},
