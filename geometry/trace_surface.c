@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// The surface at a hit: position, normals, tangent, uv; and where a ray that leaves it may begin.
+#include "trace_world.h"
+
+typedef struct corners
+{
+    const ty_mesh* mesh;
+    const uint32_t* v;
+    float w[3];
+} corners;
+
+static corners corners_of(const ty_mesh* mesh, uint32_t triangle, float u, float v)
+{
+    return (corners){mesh, mesh->triangles[triangle], {1.0f - u - v, u, v}};
+}
+
+static ty_vec3 blend3(const corners* c, const ty_vec3* field)
+{
+    ty_vec3 sum = ty_mul(field[c->v[0]], c->w[0]);
+    return ty_mad(ty_mad(sum, field[c->v[1]], c->w[1]), field[c->v[2]], c->w[2]);
+}
+
+// Along growing u of the uv map, from the triangle's own linear map. Zero when the uv are missing or degenerate.
+static ty_vec3 uv_tangent(const corners* c)
+{
+    if (!c->mesh->uvs)
+        return (ty_vec3){0.0f, 0.0f, 0.0f};
+    const ty_vec3* p = c->mesh->positions;
+    const ty_vec2* uv = c->mesh->uvs;
+    ty_vec3 e1 = ty_sub(p[c->v[1]], p[c->v[0]]), e2 = ty_sub(p[c->v[2]], p[c->v[0]]);
+    float u1 = uv[c->v[1]].x - uv[c->v[0]].x, v1 = uv[c->v[1]].y - uv[c->v[0]].y;
+    float u2 = uv[c->v[2]].x - uv[c->v[0]].x, v2 = uv[c->v[2]].y - uv[c->v[0]].y;
+    float det = u1 * v2 - u2 * v1;
+    // Only the direction matters: the sign of the determinant serves for its inverse.
+    return det == 0.0f ? (ty_vec3){0.0f, 0.0f, 0.0f}
+                       : ty_mul(ty_sub(ty_mul(e1, v2), ty_mul(e2, v1)), copysignf(1.0f, det));
+}
+
+// Principal directions are lines: the nearest vertex's is taken, since opposite signs would cancel in a blend.
+static ty_vec3 curvature_tangent(const corners* c)
+{
+    if (!c->mesh->direction_1)
+        return (ty_vec3){0.0f, 0.0f, 0.0f};
+    int nearest = c->w[1] > c->w[0] ? 1 : 0;
+    nearest = c->w[2] > c->w[nearest] ? 2 : nearest;
+    return c->mesh->direction_1[c->v[nearest]];
+}
+
+// The part of the mapped tangent perpendicular to ns, unit; false when hardly anything is left of it.
+static bool use_tangent(const ty_affine* to_world, ty_vec3 local, ty_vec3 ns, ty_vec3* dpdu)
+{
+    ty_vec3 mapped = ty_normalize(ty_map_vector(to_world, ty_normalize(local)));
+    ty_vec3 across = ty_mad(mapped, ns, -ty_dot(mapped, ns));
+    if (!(ty_length_sqr(across) > 1e-6f))
+        return false;
+    across = ty_normalize(across);
+    *dpdu = ty_normalize(ty_mad(across, ns, -ty_dot(across, ns)));
+    return true;
+}
+
+void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point* out)
+{
+    const ty_mesh* mesh = ty_world_mesh(world, hit->object, hit->instance);
+    const ty_affine* to_world = ty_world_to_world(world, hit->object, hit->instance);
+    const ty_affine* to_local = ty_world_to_local(world, hit->object, hit->instance);
+    corners c = corners_of(mesh, hit->triangle, hit->u, hit->v);
+    ty_vec3 p0 = mesh->positions[c.v[0]];
+    ty_vec3 e1 = ty_sub(mesh->positions[c.v[1]], p0), e2 = ty_sub(mesh->positions[c.v[2]], p0);
+    // Normals go by the inverse transpose, which keeps them outward under a mirror too.
+    ty_vec3 ng = ty_normalize(ty_map_transpose(to_local, ty_normalize(ty_cross(ty_normalize(e1), ty_normalize(e2)))));
+    ty_vec3 ns = ty_normalize(ty_map_transpose(to_local, ty_normalize(blend3(&c, mesh->normals))));
+    float side = ty_dot(ns, ng);
+    if (side < 0.0f)
+        ns = ty_neg(ns);
+    else if (side == 0.0f)
+        ns = ng;
+    *out = (ty_surface_point){.position = ty_map_point(to_world, blend3(&c, mesh->positions)),
+                              .ng = ng,
+                              .ns = ns,
+                              .object = hit->object,
+                              .instance = hit->instance,
+                              .triangle = hit->triangle,
+                              .u = hit->u,
+                              .v = hit->v};
+    if (!use_tangent(to_world, uv_tangent(&c), ns, &out->dpdu) &&
+        !use_tangent(to_world, curvature_tangent(&c), ns, &out->dpdu))
+        out->dpdu = ty_frame_from_normal(ns).t;
+    if (mesh->uvs)
+    {
+        ty_vec2 a = mesh->uvs[c.v[0]], b = mesh->uvs[c.v[1]], d = mesh->uvs[c.v[2]];
+        out->uv = (ty_vec2){a.x * c.w[0] + b.x * c.w[1] + d.x * c.w[2], a.y * c.w[0] + b.y * c.w[1] + d.y * c.w[2]};
+    }
+}
+
+float ty_world_interpolate(const ty_world* world, const ty_surface_point* point, const float* vertex_field)
+{
+    corners c = corners_of(ty_world_mesh(world, point->object, point->instance), point->triangle, point->u, point->v);
+    return vertex_field[c.v[0]] * c.w[0] + vertex_field[c.v[1]] * c.w[1] + vertex_field[c.v[2]] * c.w[2];
+}
+
+// C. Waechter and N. Binder 2019, "A fast and robust method for avoiding self-intersection", Ray Tracing Gems ch. 6:
+// about 256 units in the last place. Here of the largest coordinate, since under a rotated instance the error of every
+// axis comes from all of them; and the floor near the origin is set for scenes of millimetres (half a micrometre).
+ty_vec3 ty_offset_origin(ty_vec3 p, ty_vec3 n)
+{
+    float reach = ty_max(ty_max(fabsf(p.x), fabsf(p.y)), ty_max(fabsf(p.z), 0x1p-6f));
+    return ty_mad(p, n, reach * 0x1p-15f);
+}

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fast path against the reference path, hit for hit; skips, one-sided objects, determinism.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include "trace_meshes.h"
+#include <string.h>
+
+#define INSTANCES 500u
+#define RAYS 20000
+
+static const ty_object_flags opaque = {.camera_visible = true};
+static const ty_object_flags subsurface = {.closed_subsurface = true, .camera_visible = true};
+
+// Spheres and non-convex tori, stretched and mirrored, overlapping in a cube of 2 x 2 x 2.
+static ty_aggregate* make_heap(uint64_t key)
+{
+    ty_aggregate* heap = ty_aggregate_create(INSTANCES, 2);
+    heap->prototypes[0] = make_sphere(24, 15);
+    heap->prototypes[1] = make_torus(24, 12);
+    ty_rng rng = ty_rng_make((ty_seed){11}, key, 0);
+    for (uint32_t i = 0; i < INSTANCES; i++)
+    {
+        heap->prototype_index[i] = i % 2;
+        heap->transforms[i] = random_map(&rng, i, 1.0f, 0.06f);
+    }
+    return heap;
+}
+
+// A plain torus (object 0), a heap (1), a turned, shrunk and subsurface heap (2), a subsurface sphere (3).
+typedef struct stage
+{
+    ty_aggregate *first, *second;
+    ty_mesh* sphere;
+    ty_world* world[2]; // by ty_trace_path
+} stage;
+
+static ty_world* build_world(stage* s, ty_trace_path path)
+{
+    ty_world_def def = ty_world_def_default();
+    def.path = path;
+    ty_world* world = NULL;
+    ty_error error;
+    uint32_t object, prototype;
+    ty_affine identity = ty_affine_identity();
+    ty_affine plain = ty_affine_from_trs((ty_vec3){0.2f, 0.9f, 0.0f}, ty_quat_identity(), (ty_vec3){0.4f, 0.4f, -0.6f});
+    ty_affine turned =
+        ty_affine_from_trs((ty_vec3){0.5f, -0.3f, 0.4f}, ty_quat_axis_angle((ty_vec3){0.6f, 0.0f, 0.8f}, 1.1f),
+                           (ty_vec3){0.9f, 0.8f, 1.0f});
+    ty_affine small = ty_affine_from_trs((ty_vec3){-0.7f, 0.0f, 0.1f}, ty_quat_identity(), (ty_vec3){0.5f, 0.3f, 0.5f});
+    assert_int_equal(ty_world_create(&def, &world, &error), TY_OK);
+    assert_int_equal(ty_world_add_prototype(world, s->first->prototypes[1], &prototype, &error), TY_OK);
+    assert_int_equal(ty_world_add_object(world, prototype, &plain, opaque, &object, &error), TY_OK);
+    assert_int_equal(ty_world_add_aggregate(world, s->first, &identity, opaque, &object, &error), TY_OK);
+    assert_int_equal(ty_world_add_aggregate(world, s->second, &turned, subsurface, &object, &error), TY_OK);
+    assert_int_equal(ty_world_add_prototype(world, s->sphere, &prototype, &error), TY_OK);
+    assert_int_equal(ty_world_add_object(world, prototype, &small, subsurface, &object, &error), TY_OK);
+    assert_int_equal(object, 3);
+    assert_int_equal(ty_world_commit(world, &error), TY_OK);
+    return world;
+}
+
+static int set_up(void** state)
+{
+    stage* s = ty_alloc(1, sizeof *s);
+    s->first = make_heap(1);
+    s->second = make_heap(2);
+    s->sphere = make_sphere(40, 25);
+    s->world[TY_TRACE_FAST] = build_world(s, TY_TRACE_FAST);
+    s->world[TY_TRACE_REFERENCE] = build_world(s, TY_TRACE_REFERENCE);
+    *state = s;
+    return 0;
+}
+
+static int tear_down(void** state)
+{
+    stage* s = *state;
+    ty_world_destroy(s->world[0]);
+    ty_world_destroy(s->world[1]);
+    ty_aggregate_destroy(s->first);
+    ty_aggregate_destroy(s->second);
+    ty_mesh_destroy(s->sphere);
+    ty_free(s);
+    return 0;
+}
+
+// Half from outside, half from within the heap; every fifth short.
+static ty_ray random_ray(ty_rng* rng, int i)
+{
+    ty_vec3 origin = random_point(rng, 1.0f);
+    ty_vec3 direction = random_direction(rng);
+    if (i & 1)
+    {
+        origin = ty_mul(direction, 6.0f);
+        direction = ty_normalize(ty_sub(random_point(rng, 1.0f), origin));
+    }
+    float reach = ty_rng_range(rng, 0.0f, 0.5f);
+    return (ty_ray){.origin = origin,
+                    .direction = direction,
+                    .t_max = i % 5 == 0 ? reach : TY_FLOAT_MAX,
+                    .skip_object = TY_NONE,
+                    .skip_instance = TY_NONE};
+}
+
+typedef struct tally
+{
+    int hits, misses;
+    int differing; // one path hits what the other passes by, or another triangle
+} tally;
+
+// The maps of the two paths round differently, so a ray through an edge or along a silhouette may fall on either side.
+static void compare_paths(const stage* s, const ty_ray* ray, tally* sum)
+{
+    ty_hit fast, reference;
+    bool a = ty_world_intersect(s->world[TY_TRACE_FAST], ray, &fast);
+    bool b = ty_world_intersect(s->world[TY_TRACE_REFERENCE], ray, &reference);
+    sum->hits += b;
+    sum->misses += !b;
+    if (a != b)
+        sum->differing++;
+    else if (a)
+    {
+        bool same = fast.object == reference.object && fast.instance == reference.instance;
+        // The error is one of coordinates, so it is relative to them and not only to a short ray's length.
+        bool near = fabsf(fast.t - reference.t) <= 1e-5f * (reference.t + ty_length(ray->origin));
+        sum->differing += !same || !near || fast.triangle != reference.triangle;
+    }
+    assert_int_equal(ty_world_occluded(s->world[TY_TRACE_FAST], ray), a);
+    assert_int_equal(ty_world_occluded(s->world[TY_TRACE_REFERENCE], ray), b);
+}
+
+static void check_tally(const tally* sum)
+{
+    print_message("  %d hits, %d misses, %d differ\n", sum->hits, sum->misses, sum->differing);
+    assert_true(sum->hits > RAYS / 20);
+    assert_true(sum->misses > RAYS / 50);
+    assert_true(sum->differing <= (sum->hits + sum->misses) / 5000);
+}
+
+static void fast_equals_reference(void** state)
+{
+    tally sum = {0};
+    ty_rng rng = ty_rng_make((ty_seed){5}, 0, 0);
+    for (int i = 0; i < RAYS; i++)
+    {
+        ty_ray ray = random_ray(&rng, i);
+        compare_paths(*state, &ray, &sum);
+    }
+    check_tally(&sum);
+}
+
+static void fast_equals_reference_front_only(void** state)
+{
+    tally sum = {0};
+    ty_rng rng = ty_rng_make((ty_seed){6}, 0, 0);
+    for (int i = 0; i < RAYS; i++)
+    {
+        ty_ray ray = random_ray(&rng, i);
+        ray.flags = TY_RAY_FRONT_ONLY;
+        compare_paths(*state, &ray, &sum);
+    }
+    check_tally(&sum);
+}
+
+static void fast_equals_reference_with_skips(void** state)
+{
+    const stage* s = *state;
+    tally sum = {0};
+    ty_rng rng = ty_rng_make((ty_seed){7}, 0, 0);
+    for (int i = 0; i < RAYS; i++)
+    {
+        ty_ray ray = random_ray(&rng, i);
+        ty_hit hit;
+        if (!ty_world_intersect(s->world[TY_TRACE_REFERENCE], &ray, &hit))
+            continue;
+        ray.skip_object = hit.object;
+        ray.skip_instance = hit.instance;
+        ray.skip_distance = i % 3 == 0 ? TY_FLOAT_MAX : hit.t * 1.01f;
+        ray.flags = i % 2 ? TY_RAY_FRONT_ONLY : TY_RAY_PLAIN;
+        compare_paths(s, &ray, &sum);
+    }
+    check_tally(&sum);
+}
+
+// The n-th surface along a ray, found by skipping nothing but by starting again behind each hit.
+static void skip_passes_the_instance(void** state)
+{
+    const stage* s = *state;
+    ty_rng rng = ty_rng_make((ty_seed){8}, 0, 0);
+    int through = 0;
+    for (int path = 0; path < 2; path++)
+        for (int i = 0; i < 4000; i++)
+        {
+            ty_ray ray = random_ray(&rng, i);
+            ty_hit hit, beyond;
+            if (!ty_world_intersect(s->world[path], &ray, &hit))
+                continue;
+            ray.skip_object = hit.object;
+            ray.skip_instance = hit.instance;
+            ray.skip_distance = TY_FLOAT_MAX;
+            if (ty_world_intersect(s->world[path], &ray, &beyond))
+            {
+                assert_true(beyond.object != hit.object || beyond.instance != hit.instance);
+                assert_true(beyond.t >= hit.t);
+            }
+            ray.skip_distance = nextafterf(hit.t, TY_FLOAT_MAX);
+            if (ty_world_intersect(s->world[path], &ray, &beyond))
+            {
+                bool own = beyond.object == hit.object && beyond.instance == hit.instance;
+                assert_true(!own || beyond.t > hit.t);
+                through += own;
+            }
+            // At the very distance the hit is kept: only nearer ones are passed.
+            ray.skip_distance = hit.t;
+            assert_true(ty_world_intersect(s->world[path], &ray, &beyond));
+            assert_true(beyond.t == hit.t);
+        }
+    assert_true(through > 100);
+}
+
+// From inside a mirrored one-sided sphere: its wall is passed with FRONT_ONLY, seen without.
+static void one_sided_objects(void** state)
+{
+    const stage* s = *state;
+    for (int path = 0; path < 2; path++)
+    {
+        ty_rng rng = ty_rng_make((ty_seed){9}, 0, 0);
+        for (int i = 0; i < 2000; i++)
+        {
+            ty_ray ray = random_ray(&rng, i & ~1);
+            ray.t_max = TY_FLOAT_MAX;
+            ray.flags = TY_RAY_FRONT_ONLY;
+            ty_hit hit;
+            if (!ty_world_intersect(s->world[path], &ray, &hit) || hit.object < 2)
+                continue;
+            ty_surface_point point;
+            ty_world_surface(s->world[path], &hit, &point);
+            assert_true(ty_dot(point.ng, ray.direction) < 0.0f);
+        }
+        const ty_affine* map = ty_world_to_world(s->world[path], 3, 0);
+        ty_ray ray = {
+            .origin = map->t, .direction = {0, 1, 0}, .t_max = 0.35f, .skip_object = TY_NONE, .skip_instance = TY_NONE};
+        ty_hit hit;
+        ray.skip_object = TY_NONE;
+        int walls[2] = {0, 0};
+        for (uint32_t flags = 0; flags < 2; flags++)
+        {
+            ray.flags = flags;
+            for (int i = 0; i < 50; i++)
+            {
+                ray.direction = random_direction(&rng);
+                walls[flags] += ty_world_intersect(s->world[path], &ray, &hit) && hit.object == 3;
+            }
+        }
+        assert_true(walls[0] > 0);
+        assert_int_equal(walls[1], 0);
+    }
+}
+
+static void two_builds_are_one(void** state)
+{
+    stage* s = *state;
+    for (int path = 0; path < 2; path++)
+    {
+        ty_world* again = build_world(s, (ty_trace_path)path);
+        ty_rng rng = ty_rng_make((ty_seed){10}, 0, 0);
+        for (int i = 0; i < 5000; i++)
+        {
+            ty_ray ray = random_ray(&rng, i);
+            ty_hit a, b;
+            memset(&a, 0, sizeof a);
+            memset(&b, 0, sizeof b);
+            bool hit = ty_world_intersect(s->world[path], &ray, &a);
+            assert_int_equal(hit, ty_world_intersect(again, &ray, &b));
+            assert_memory_equal(&a, &b, sizeof a);
+        }
+        // At least the positions and indices of the prototypes, and two maps an instance.
+        assert_true(ty_world_memory(again) > 2 * INSTANCES * 2 * sizeof(ty_affine));
+        assert_true(ty_world_memory(again) == ty_world_memory(s->world[path]));
+        ty_world_destroy(again);
+    }
+}
+
+// Far from the world's origin the ellipsoid test must still not cut what the prototype's tree would find.
+static void far_from_the_origin(void** state)
+{
+    stage* s = *state;
+    ty_affine away = ty_affine_identity();
+    away.t = (ty_vec3){200.0f, -50.0f, 120.0f};
+    ty_world* world[2];
+    ty_error error;
+    uint32_t object;
+    for (int path = 0; path < 2; path++)
+    {
+        ty_world_def def = {(ty_trace_path)path, NULL};
+        assert_int_equal(ty_world_create(&def, &world[path], &error), TY_OK);
+        assert_int_equal(ty_world_add_aggregate(world[path], s->first, &away, opaque, &object, &error), TY_OK);
+        assert_int_equal(ty_world_commit(world[path], &error), TY_OK);
+    }
+    ty_rng rng = ty_rng_make((ty_seed){12}, 0, 0);
+    int hits = 0, differing = 0;
+    for (int i = 0; i < RAYS; i++)
+    {
+        ty_ray ray = random_ray(&rng, i);
+        ray.origin = ty_add(ray.origin, away.t);
+        ty_hit a, b;
+        bool fast = ty_world_intersect(world[0], &ray, &a), reference = ty_world_intersect(world[1], &ray, &b);
+        hits += reference;
+        differing += fast != reference || (fast && a.instance != b.instance);
+    }
+    print_message("  %d hits, %d differ\n", hits, differing);
+    assert_true(hits > RAYS / 4);
+    assert_true(differing <= hits / 500);
+    ty_world_destroy(world[0]);
+    ty_world_destroy(world[1]);
+}
+
+static void numbering(void** state)
+{
+    stage* s = *state;
+    const ty_world* world = s->world[TY_TRACE_FAST];
+    assert_int_equal(ty_world_prototype_count(world), 5);
+    assert_ptr_equal(ty_world_mesh(world, 1, 3), s->first->prototypes[1]);
+    assert_ptr_equal(ty_world_mesh(world, 0, 0), s->first->prototypes[1]);
+    assert_int_equal(ty_world_prototype(world, 0, 0), ty_world_prototype(world, 1, 1));
+    assert_memory_equal(ty_world_to_world(world, 1, 7), &s->first->transforms[7], sizeof(ty_affine));
+    assert_true(ty_world_topology(world, 0)->closed);
+    assert_false(ty_world_topology(world, 0)->convex);
+    assert_true(ty_world_topology(world, ty_world_prototype(world, 3, 0))->convex);
+}
+
+static void bad_input(void** state)
+{
+    stage* s = *state;
+    ty_world* world = NULL;
+    ty_error error = {0};
+    ty_world_def def = {TY_TRACE_FAST, "avx9"};
+    assert_int_equal(ty_world_create(&def, &world, &error), TY_BAD_INPUT);
+    assert_null(world);
+    def.isa = "avx2,verbose=3";
+    assert_int_equal(ty_world_create(&def, &world, &error), TY_BAD_INPUT);
+    def.isa = "sse4.2";
+    assert_int_equal(ty_world_create(&def, &world, &error), TY_OK);
+    uint32_t prototype, object;
+    ty_affine flat = ty_affine_identity();
+    flat.z.z = 0.0f;
+    assert_int_equal(ty_world_add_prototype(world, s->sphere, &prototype, &error), TY_OK);
+    assert_int_equal(ty_world_add_object(world, prototype, &flat, opaque, &object, &error), TY_BAD_INPUT);
+    s->first->transforms[41].t.x = NAN;
+    ty_affine identity = ty_affine_identity();
+    assert_int_equal(ty_world_add_aggregate(world, s->first, &identity, opaque, &object, &error), TY_BAD_INPUT);
+    assert_non_null(strstr(error.text, "instance 41"));
+    assert_int_equal(ty_world_commit(world, &error), TY_OK);
+    ty_ray ray = {.direction = {0, 0, 1}, .t_max = TY_FLOAT_MAX, .skip_object = TY_NONE, .skip_instance = TY_NONE};
+    ty_hit hit;
+    assert_false(ty_world_intersect(world, &ray, &hit));
+    assert_false(ty_world_occluded(world, &ray));
+    ty_world_destroy(world);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(fast_equals_reference),
+        cmocka_unit_test(fast_equals_reference_front_only),
+        cmocka_unit_test(fast_equals_reference_with_skips),
+        cmocka_unit_test(skip_passes_the_instance),
+        cmocka_unit_test(one_sided_objects),
+        cmocka_unit_test(two_builds_are_one),
+        cmocka_unit_test(far_from_the_origin),
+        cmocka_unit_test(numbering),
+        cmocka_unit_test(bad_input),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
