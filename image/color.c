@@ -2,7 +2,6 @@
 // Colour management: which configuration, which names, and pixels through OpenColorIO.
 #include "color_config.h"
 #include "color_ocio.h"
-#include "half.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +9,7 @@
 #include <tsuya/base/memory.h>
 #include <tsuya/base/suggest.h>
 #include <tsuya/image/color.h>
+#include <tsuya/image/half.h>
 
 struct ty_color
 {

@@ -102,7 +102,7 @@ const char ty_color_embedded_config[] =
                       "Rec.709 primaries and the curve of BT.1886 (gamma 2.4)", "!<ExponentTransform> {value: 2.4}") //
     "  - !<ColorSpace>\n"
     "    name: raw\n"
-    "    aliases: [Raw, data, Utility - Raw]\n"
+    "    aliases: [Utility - Raw]\n"
     "    family: Data\n"
     "    description: Numbers that are no colours\n"
     "    isdata: true\n";

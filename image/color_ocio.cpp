@@ -93,9 +93,9 @@ const char* name_at(const std::vector<std::string>& names, int index)
     return index >= 0 && size_t(index) < names.size() ? names[size_t(index)].c_str() : nullptr;
 }
 
-// The processor kept under key, made when it is asked for the first time. Its object lives as long as the configuration.
-template <class Make>
-const OCIO::CPUProcessor& processor(const ty_ocio& ocio, const std::string& key, Make make)
+// The processor kept under key, made when it is asked for the first time. Its object lives as long as the
+// configuration.
+template <class Make> const OCIO::CPUProcessor& processor(const ty_ocio& ocio, const std::string& key, Make make)
 {
     const std::lock_guard<std::mutex> lock(ocio.guard);
     OCIO::ConstCPUProcessorRcPtr& kept = ocio.processors[key];
@@ -119,23 +119,25 @@ void quiet(const char*)
 ty_ocio_result ty_ocio_load(const char* path, const char* embedded, ty_ocio** out, char* text, size_t text_size)
 {
     *out = nullptr;
-    return guarded(text, text_size, [&] {
-        // Both: the variable OCIO_LOGGING_LEVEL overrules the level.
-        OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);
-        OCIO::SetLoggingFunction(quiet);
-        auto ocio = std::make_unique<ty_ocio>();
-        if (path)
-            ocio->config = OCIO::Config::CreateFromFile(path);
-        else
-        {
-            std::istringstream stream(embedded);
-            ocio->config = OCIO::Config::CreateFromStream(stream);
-        }
-        ocio->config->validate();
-        gather_names(*ocio);
-        *out = ocio.release();
-        return TY_OCIO_OK;
-    });
+    return guarded(text, text_size,
+                   [&]
+                   {
+                       // Both: the variable OCIO_LOGGING_LEVEL overrules the level.
+                       OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);
+                       OCIO::SetLoggingFunction(quiet);
+                       auto ocio = std::make_unique<ty_ocio>();
+                       if (path)
+                           ocio->config = OCIO::Config::CreateFromFile(path);
+                       else
+                       {
+                           std::istringstream stream(embedded);
+                           ocio->config = OCIO::Config::CreateFromStream(stream);
+                       }
+                       ocio->config->validate();
+                       gather_names(*ocio);
+                       *out = ocio.release();
+                       return TY_OCIO_OK;
+                   });
 }
 
 void ty_ocio_close(ty_ocio* ocio)
@@ -147,10 +149,12 @@ int ty_ocio_knows(const ty_ocio* ocio, const char* name)
 {
     char text[8];
     bool known = false;
-    const ty_ocio_result result = guarded(text, sizeof text, [&] {
-        known = ocio->config->getColorSpace(name) != nullptr;
-        return TY_OCIO_OK;
-    });
+    const ty_ocio_result result = guarded(text, sizeof text,
+                                          [&]
+                                          {
+                                              known = ocio->config->getColorSpace(name) != nullptr;
+                                              return TY_OCIO_OK;
+                                          });
     return result == TY_OCIO_OK && known;
 }
 
@@ -173,23 +177,26 @@ const char* ty_ocio_view(const ty_ocio* ocio, const char* display, int index)
 ty_ocio_result ty_ocio_convert(const ty_ocio* ocio, const char* from, const char* to, float* pixels, long pixel_count,
                                int channels, char* text, size_t text_size)
 {
-    return guarded(text, text_size, [&] {
-        const std::string key = std::string("space\n") + from + "\n" + to;
-        apply(processor(*ocio, key, [&] { return ocio->config->getProcessor(from, to); }), pixels, pixel_count,
-              channels);
-        return TY_OCIO_OK;
-    });
+    return guarded(text, text_size,
+                   [&]
+                   {
+                       const std::string key = std::string("space\n") + from + "\n" + to;
+                       apply(processor(*ocio, key, [&] { return ocio->config->getProcessor(from, to); }), pixels,
+                             pixel_count, channels);
+                       return TY_OCIO_OK;
+                   });
 }
 
 ty_ocio_result ty_ocio_develop(const ty_ocio* ocio, const char* from, const char* display, const char* view,
                                float* pixels, long pixel_count, int channels, char* text, size_t text_size)
 {
-    return guarded(text, text_size, [&] {
-        const std::string key = std::string("view\n") + from + "\n" + display + "\n" + view;
-        const auto make = [&] {
-            return ocio->config->getProcessor(from, display, view, OCIO::TRANSFORM_DIR_FORWARD);
-        };
-        apply(processor(*ocio, key, make), pixels, pixel_count, channels);
-        return TY_OCIO_OK;
-    });
+    return guarded(text, text_size,
+                   [&]
+                   {
+                       const std::string key = std::string("view\n") + from + "\n" + display + "\n" + view;
+                       const auto make = [&]
+                       { return ocio->config->getProcessor(from, display, view, OCIO::TRANSFORM_DIR_FORWARD); };
+                       apply(processor(*ocio, key, make), pixels, pixel_count, channels);
+                       return TY_OCIO_OK;
+                   });
 }

@@ -37,6 +37,8 @@ ty_status ty_exr_core_fail(ty_error* error, const char* path, exr_result_t resul
 {
     if (result == EXR_ERR_OUT_OF_MEMORY)
         return ty_error_set_at(error, TY_NO_MEMORY, path, 0, 0, "not enough memory for the image");
+    if (result == EXR_ERR_READ_IO && !first_message[0])
+        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "the EXR file ends early: truncated or damaged");
     const char* text = first_message[0] ? first_message : exr_get_default_error_message(result);
     return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "OpenEXR: %s", text);
 }
@@ -44,9 +46,9 @@ ty_status ty_exr_core_fail(ty_error* error, const char* path, exr_result_t resul
 bool ty_exr_is_reserved(const char* attribute_name)
 {
     static const char* const reserved[] = {
-        "channels",  "compression", "dataWindow", "displayWindow",      "lineOrder",         "pixelAspectRatio",
-        "chunkCount", "tiles",      "version",    "screenWindowCenter", "screenWindowWidth", "name",
-        "type",
+        "channels",          "compression", "dataWindow", "displayWindow", "lineOrder",
+        "pixelAspectRatio",  "chunkCount",  "tiles",      "version",       "screenWindowCenter",
+        "screenWindowWidth", "name",        "type",
     };
     for (size_t i = 0; i < sizeof reserved / sizeof *reserved; i++)
         if (strcmp(attribute_name, reserved[i]) == 0)

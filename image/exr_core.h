@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the EXR reader and writer share: the set-up of OpenEXRCore, its messages as ours, names that the format reserves.
+// What the EXR reader and writer share: the set-up of OpenEXRCore, its messages as ours, names that the format
+// reserves.
 #pragma once
 #include <openexr.h>
 #include <stdbool.h>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // EXR writing through OpenEXRCore: one part, scan lines, ZIP in blocks of 16 lines; the file is complete or absent.
 #include "exr_core.h"
-#include "half.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <tsuya/base/file.h>
 #include <tsuya/image/exr.h>
+#include <tsuya/image/half.h>
 #include <unistd.h>
 
 enum
@@ -65,8 +65,8 @@ static ty_status check_image(const char* path, const ty_exr* exr, const ty_exr_c
         return ty_error_set_at(error, TY_BAD_INPUT, path, 0, 0, "an EXR image needs at least one channel");
     if (!window_is_sane(exr->data_window) || !window_is_sane(exr->display_window) ||
         ty_exr_width(exr) > TY_EXR_MAX_SIDE || ty_exr_height(exr) > TY_EXR_MAX_SIDE)
-        return ty_error_set_at(error, TY_BAD_INPUT, path, 0, 0, "the image's windows are empty or above %d pixels a side",
-                               TY_EXR_MAX_SIDE);
+        return ty_error_set_at(error, TY_BAD_INPUT, path, 0, 0,
+                               "the image's windows are empty or above %d pixels a side", TY_EXR_MAX_SIDE);
     for (int i = 0; i < exr->channel_count; i++)
         sorted[i] = &exr->channels[i];
     qsort(sorted, (size_t)exr->channel_count, sizeof *sorted, by_name);

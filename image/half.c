@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Float to half with round-to-nearest-even and saturation.
-#include "half.h"
+#include <tsuya/image/half.h>
 
 // Drops the low `shift` bits (1..24) of value, ties to even.
 static uint32_t round_shift(uint32_t value, uint32_t shift)

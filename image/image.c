@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Image files as interleaved floats: recognised by content, checked for proportion, then read through OpenImageIO.
-#include "exr_check.h"
+#include "image_check.h"
 #include "image_oiio.h"
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 #include <tsuya/base/file.h>
 #include <tsuya/base/math.h>
 #include <tsuya/base/memory.h>
@@ -14,39 +12,10 @@
 
 enum
 {
-    MAX_SIDE = 32768,
     MAX_CHANNELS = 1024,
-    LEAD_SIZE = 16,
-    // Bytes out for one byte in of an integer format: deflate and arithmetic coding of a flat image stay below.
-    MAX_RATIO = 2000,
 };
 
-typedef struct known_format
-{
-    const char* name; // of OpenImageIO
-    const char* magic;
-    size_t offset, size;
-} known_format;
-
-// Content decides, not the extension. Readers that follow references to other files or play films are left out.
-static const known_format formats[] = {
-    {"openexr", "\x76\x2f\x31\x01", 0, 4},
-    {"png", "\x89PNG\r\n\x1a\n", 0, 8},
-    {"jpeg", "\xff\xd8\xff", 0, 3},
-    {"tiff", "II*\0", 0, 4},
-    {"tiff", "MM\0*", 0, 4},
-    {"tiff", "II+\0", 0, 4},
-    {"tiff", "MM\0+", 0, 4},
-    {"hdr", "#?", 0, 2},
-    {"bmp", "BM", 0, 2},
-    {"webp", "WEBP", 8, 4},
-    {"pnm", "P5", 0, 2},
-    {"pnm", "P6", 0, 2},
-    {"pnm", "Pf", 0, 2},
-    {"pnm", "PF", 0, 2},
-    {"dpx", "SDPX", 0, 4},
-    {"dpx", "XPDS", 0, 4},
-};
+#define MAX_FILE_SIZE ((size_t)16 << 30)
 
 void ty_image_term(ty_image* image)
 {
@@ -62,65 +31,37 @@ static ty_status shim_status(ty_oiio_result result, const char* path, const char
     return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "%s: %s", doing, text);
 }
 
-// Finds the format by the first bytes and the file's size.
-static ty_status recognise(const char* path, const char** name, size_t* size, ty_error* error)
-{
-    struct stat about;
-    FILE* file = NULL;
-    if (stat(path, &about) != 0 || (S_ISREG(about.st_mode) && !(file = fopen(path, "rb"))))
-        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "cannot read: %s", strerror(errno));
-    if (!file)
-        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "cannot read: not a regular file");
-    char lead[LEAD_SIZE] = {0};
-    size_t count = fread(lead, 1, sizeof lead, file);
-    fclose(file);
-    if (count == 0)
-        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "the file is empty");
-    *size = (size_t)about.st_size;
-    *name = strcasecmp(ty_path_extension(path), "tga") == 0 ? "targa" : NULL;
-    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
-        if (count >= formats[i].offset + formats[i].size &&
-            memcmp(lead + formats[i].offset, formats[i].magic, formats[i].size) == 0)
-        {
-            *name = formats[i].name;
-            break;
-        }
-    if (!*name)
-        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0,
-                               "not an image in a known format (EXR, HDR, PNG, JPEG, TIFF, BMP, TGA, PNM, WebP, DPX)");
-    return TY_OK;
-}
-
-// The EXR header is looked at before a library that trusts it is.
-static ty_status check_exr(const char* path, size_t size, ty_error* error)
+// Looks at the file's bytes: its format, its size, and whether they are fit for a library.
+static ty_status inspect(const char* path, const char** format, size_t* size, ty_error* error)
 {
     ty_bytes bytes;
-    ty_status status = ty_file_read(path, size, &bytes, error);
+    ty_status status = ty_file_read(path, MAX_FILE_SIZE, &bytes, error);
     if (status)
         return status;
-    ty_exr_claim claim;
-    status = ty_exr_check_header(path, bytes.data, bytes.size, &claim, error);
-    if (!status && claim.deep)
-        status = ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "deep EXR files cannot be read");
-    if (!status)
-        status = ty_exr_check_size(path, &claim, bytes.size, MAX_SIDE, error);
+    *size = bytes.size;
+    *format = ty_image_format(path, bytes.data, bytes.size);
+    if (bytes.size == 0)
+        status = ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "the file is empty");
+    else if (!*format)
+        status =
+            ty_error_set_at(error, TY_BAD_FILE, path, 0, 0,
+                            "not an image in a known format (EXR, HDR, PNG, JPEG, TIFF, BMP, TGA, PNM, WebP, DPX)");
+    else
+        status = ty_image_check(path, *format, bytes.data, bytes.size, error);
     ty_bytes_term(&bytes);
     return status;
 }
 
-static ty_status check_size(const char* path, const char* name, const ty_oiio_info* info, size_t size, ty_error* error)
+static ty_status check_info(const char* path, const char* format, const ty_oiio_info* info, size_t size,
+                            ty_error* error)
 {
-    if (info->width < 1 || info->height < 1 || info->width > MAX_SIDE || info->height > MAX_SIDE ||
-        info->channels < 1 || info->channels > MAX_CHANNELS)
-        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0,
-                               "image of %d x %d pixels and %d channels: 1 to %d a side, 1 to %d channels", info->width,
-                               info->height, info->channels, MAX_SIDE, MAX_CHANNELS);
-    double claimed = (double)info->width * info->height * info->channels * info->bytes_per_channel;
-    if (strcmp(name, "openexr") != 0 && claimed > (double)size * MAX_RATIO)
-        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0,
-                               "header claims %d x %d pixels (%.1f MB), more than %zu bytes can hold: truncated or damaged",
-                               info->width, info->height, claimed * 1e-6, size);
-    return TY_OK;
+    if (info->channels < 1 || info->channels > MAX_CHANNELS)
+        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "image of %d channels; 1 to %d are read", info->channels,
+                               MAX_CHANNELS);
+    if (strcmp(format, "openexr") == 0) // was checked with the ratio of its compression
+        return TY_OK;
+    int64_t bytes_per_pixel = (int64_t)info->channels * info->bytes_per_channel;
+    return ty_image_check_claim(path, info->width, info->height, bytes_per_pixel, size, error);
 }
 
 static bool primaries_are(const float a[8], const float b[8])
@@ -150,10 +91,10 @@ static const char* space_of(const ty_oiio_info* info)
     return info->color_space;
 }
 
-static ty_status read_open(const char* path, const char* name, ty_oiio_input* input, const ty_oiio_info* info,
+static ty_status read_open(const char* path, const char* format, ty_oiio_input* input, const ty_oiio_info* info,
                            size_t size, ty_image* out, ty_error* error)
 {
-    ty_status status = check_size(path, name, info, size, error);
+    ty_status status = check_info(path, format, info, size, error);
     if (status)
         return status;
     size_t count = (size_t)info->width * (size_t)info->height * (size_t)info->channels;
@@ -176,20 +117,18 @@ static ty_status read_open(const char* path, const char* name, ty_oiio_input* in
 ty_status ty_image_read(const char* path, ty_image* out, ty_error* error)
 {
     *out = (ty_image){0};
-    const char* name = NULL;
+    const char* format = NULL;
     size_t size = 0;
-    ty_status status = recognise(path, &name, &size, error);
-    if (!status && strcmp(name, "openexr") == 0)
-        status = check_exr(path, size, error);
+    ty_status status = inspect(path, &format, &size, error);
     if (status)
         return status;
     char text[512];
     ty_oiio_input* input = NULL;
     ty_oiio_info info;
-    ty_oiio_result result = ty_oiio_open(name, path, &input, &info, text, sizeof text);
+    ty_oiio_result result = ty_oiio_open(format, path, &input, &info, text, sizeof text);
     if (result != TY_OIIO_OK)
         return shim_status(result, path, "cannot read image", text, error);
-    status = read_open(path, name, input, &info, size, out, error);
+    status = read_open(path, format, input, &info, size, out, error);
     ty_oiio_close(input);
     return status;
 }
@@ -240,18 +179,17 @@ static ty_status check_output(const char* path, const ty_image* image, int bits,
 
 static ty_status write_levels(const char* path, const ty_image* image, int bits, const void* levels, ty_error* error)
 {
-    ty_atomic_file file;
-    ty_status status = ty_atomic_begin(&file, path, error);
-    if (status)
-        return status;
     char text[512];
-    ty_oiio_result result =
-        ty_oiio_write(output_format(path), file.temporary, image->width, image->height, image->channels, bits, levels,
-                      image->color_space, text, sizeof text);
-    if (result == TY_OIIO_OK)
-        return ty_atomic_commit(&file, error);
-    ty_atomic_abort(&file);
-    return shim_status(result, path, "cannot write", text, error);
+    ty_oiio_output* output = NULL;
+    ty_oiio_result result = ty_oiio_encode(output_format(path), image->width, image->height, image->channels, bits,
+                                           levels, image->color_space, &output, text, sizeof text);
+    if (result != TY_OIIO_OK)
+        return shim_status(result, path, "cannot write", text, error);
+    size_t size = 0;
+    const void* bytes = ty_oiio_output_bytes(output, &size);
+    ty_status status = ty_file_write(path, bytes, size, error);
+    ty_oiio_output_destroy(output);
+    return status;
 }
 
 ty_status ty_image_write(const char* path, const ty_image* image, int bits, ty_error* error)

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shim over OpenImageIO: alpha as stored, no threads of its own, no dither, no time stamps.
 #include "image_oiio.h"
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <cstdio>
 #include <exception>
 #include <memory>
 #include <new>
+#include <vector>
 
 struct ty_oiio_input
 {
     std::unique_ptr<OIIO::ImageInput> file;
+};
+
+struct ty_oiio_output
+{
+    std::vector<unsigned char> bytes;
 };
 
 namespace
@@ -17,7 +24,8 @@ namespace
 
 void set_up()
 {
-    static const bool done = [] {
+    static const bool done = []
+    {
         // Both, or OpenImageIO and the OpenEXR library start pools of their own.
         OIIO::attribute("threads", 1);
         OIIO::attribute("exr_threads", -1);
@@ -96,32 +104,36 @@ ty_oiio_result ty_oiio_open(const char* format, const char* path, ty_oiio_input*
                             size_t text_size)
 {
     *out = nullptr;
-    return guarded(text, text_size, [&] {
-        set_up();
-        std::unique_ptr<OIIO::ImageInput> file = OIIO::ImageInput::create(format);
-        if (!file)
-            return fail(text, text_size, OIIO::geterror());
-        OIIO::ImageSpec config, spec;
-        config.attribute("oiio:UnassociatedAlpha", 1);
-        if (!file->open(path, spec, config))
-            return fail(text, text_size, file->geterror());
-        fill_info(spec, info);
-        *out = new ty_oiio_input{std::move(file)};
-        return TY_OIIO_OK;
-    });
+    return guarded(text, text_size,
+                   [&]
+                   {
+                       set_up();
+                       std::unique_ptr<OIIO::ImageInput> file = OIIO::ImageInput::create(format);
+                       if (!file)
+                           return fail(text, text_size, OIIO::geterror());
+                       OIIO::ImageSpec config, spec;
+                       config.attribute("oiio:UnassociatedAlpha", 1);
+                       if (!file->open(path, spec, config))
+                           return fail(text, text_size, file->geterror());
+                       fill_info(spec, info);
+                       *out = new ty_oiio_input{std::move(file)};
+                       return TY_OIIO_OK;
+                   });
 }
 
 ty_oiio_result ty_oiio_read(ty_oiio_input* input, float* pixels, char* text, size_t text_size)
 {
-    return guarded(text, text_size, [&] {
-        OIIO::ImageInput& file = *input->file;
-        const int channels = file.spec().nchannels;
-        // A JPEG that ends early reads as grey with a warning that stands only in the error text.
-        const bool good = file.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, pixels);
-        if (!good || file.has_error())
-            return fail(text, text_size, file.geterror());
-        return TY_OIIO_OK;
-    });
+    return guarded(text, text_size,
+                   [&]
+                   {
+                       OIIO::ImageInput& file = *input->file;
+                       const int channels = file.spec().nchannels;
+                       // A JPEG that ends early reads as grey with a warning that stands only in the error text.
+                       const bool good = file.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, pixels);
+                       if (!good || file.has_error())
+                           return fail(text, text_size, file.geterror());
+                       return TY_OIIO_OK;
+                   });
 }
 
 void ty_oiio_close(ty_oiio_input* input)
@@ -130,34 +142,59 @@ void ty_oiio_close(ty_oiio_input* input)
         return;
     char text[64];
     // Pending messages would be printed by the destructor.
-    (void)guarded(text, sizeof text, [&] {
-        (void)input->file->geterror();
-        input->file->close();
-        (void)input->file->geterror();
-        delete input;
-        return TY_OIIO_OK;
-    });
+    (void)guarded(text, sizeof text,
+                  [&]
+                  {
+                      (void)input->file->geterror();
+                      input->file->close();
+                      (void)input->file->geterror();
+                      delete input;
+                      return TY_OIIO_OK;
+                  });
 }
 
-ty_oiio_result ty_oiio_write(const char* format, const char* path, int width, int height, int channels, int bits,
-                             const void* bytes, const char* color_space, char* text, size_t text_size)
+ty_oiio_result ty_oiio_encode(const char* format, int width, int height, int channels, int bits, const void* levels,
+                              const char* color_space, ty_oiio_output** out, char* text, size_t text_size)
 {
-    return guarded(text, text_size, [&] {
-        set_up();
-        std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create(format);
-        if (!file)
-            return fail(text, text_size, OIIO::geterror());
-        const OIIO::TypeDesc type = bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
-        OIIO::ImageSpec spec(width, height, channels, type);
-        spec.attribute("oiio:UnassociatedAlpha", 1);
-        if (color_space[0])
-            spec.attribute("oiio:ColorSpace", color_space);
-        if (std::string(format) == "jpeg")
-            spec.attribute("Compression", "jpeg:95");
-        if (std::string(format) == "tiff")
-            spec.attribute("Compression", "zip");
-        if (!file->open(path, spec) || !file->write_image(type, bytes) || !file->close())
-            return fail(text, text_size, file->geterror());
-        return TY_OIIO_OK;
-    });
+    *out = nullptr;
+    return guarded(text, text_size,
+                   [&]
+                   {
+                       set_up();
+                       auto output = std::make_unique<ty_oiio_output>();
+                       OIIO::Filesystem::IOVecOutput memory(output->bytes);
+                       void* proxy = &memory;
+                       std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create(format);
+                       if (!file || !file->supports("ioproxy"))
+                           return fail(text, text_size, file ? "cannot be written in memory" : OIIO::geterror());
+                       const OIIO::TypeDesc type = bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
+                       OIIO::ImageSpec spec(width, height, channels, type);
+                       spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+                       spec.attribute("oiio:UnassociatedAlpha", 1);
+                       if (color_space[0])
+                           spec.attribute("oiio:ColorSpace", color_space);
+                       if (std::string(format) == "jpeg")
+                           spec.attribute("Compression", "jpeg:95");
+                       if (std::string(format) == "tiff")
+                       {
+                           spec.attribute("Compression", "zip");
+                           spec.attribute("DateTime", 0); // not a date, so that none is written
+                       }
+                       const std::string name = std::string("memory.") + format;
+                       if (!file->open(name, spec) || !file->write_image(type, levels) || !file->close())
+                           return fail(text, text_size, file->geterror());
+                       *out = output.release();
+                       return TY_OIIO_OK;
+                   });
+}
+
+const void* ty_oiio_output_bytes(const ty_oiio_output* output, size_t* size)
+{
+    *size = output->bytes.size();
+    return output->bytes.data();
+}
+
+void ty_oiio_output_destroy(ty_oiio_output* output)
+{
+    delete output;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures: an image file as halves in ACEScg, and bilinear lookups in it.
-#include "half.h"
 #include <tsuya/base/memory.h>
+#include <tsuya/image/half.h>
 #include <tsuya/image/image.h>
 #include <tsuya/image/texture.h>
 
