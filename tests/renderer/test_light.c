@@ -216,6 +216,26 @@ static void test_environment_orientation(void** state)
     ty_texture_destroy(image);
 }
 
+// A bright row at one pole is not seen at the other, though the texture repeats.
+static void test_rows_do_not_wrap_over_the_poles(void** state)
+{
+    (void)state;
+    for (int bottom = 0; bottom < 2; ++bottom)
+    {
+        ty_texture* image = image_make(0.0f, 20, bottom ? HEIGHT - 1 : 0, 10.0f);
+        ty_light light = environment_make(image, 0.0f);
+        for (int i = 0; i < 256; ++i)
+        {
+            float s, c;
+            ty_sincos(2.0f * TY_PI * (float)i / 256.0f, &s, &c);
+            ty_vec3 opposite = {1e-3f * s, bottom ? 1.0f : -1.0f, 1e-3f * c};
+            assert_true(ty_light_environment_radiance(&light, opposite).g == 0.0f);
+        }
+        ty_distribution_destroy(light.distribution);
+        ty_texture_destroy(image);
+    }
+}
+
 static void test_environment_density(void** state)
 {
     (void)state;
@@ -238,6 +258,10 @@ static void test_environment_density(void** state)
         }
     if (fabs(integral - 1.0) > 5e-3)
         fail_msg("the density integrates to %g", integral);
+    // An even sky is sampled evenly by solid angle: near the pole (within a row of it) as at the horizon.
+    float pole = ty_light_environment_pdf(&light, ty_normalize((ty_vec3){-0.15f, -1.0f, 0.0f}));
+    float horizon = ty_light_environment_pdf(&light, ty_normalize((ty_vec3){-1.0f, -0.05f, 0.0f}));
+    assert_true(pole / horizon > 0.8f && pole / horizon < 1.25f);
     for (int k = 0; k < 10000; ++k)
     {
         ty_rng rng = ty_rng_make((ty_seed){5}, 0, (uint64_t)k);
@@ -284,6 +308,7 @@ int main(void)
         cmocka_unit_test(test_near_rectangle_is_uniform_in_solid_angle),
         cmocka_unit_test(test_sphere_outside_and_inside),
         cmocka_unit_test(test_environment_orientation),
+        cmocka_unit_test(test_rows_do_not_wrap_over_the_poles),
         cmocka_unit_test(test_environment_density),
         cmocka_unit_test(test_smooth_images_are_left_to_rays),
         cmocka_unit_test(test_heuristic_never_overflows),
