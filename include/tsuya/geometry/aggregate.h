@@ -42,3 +42,7 @@ TY_CHECKED ty_status ty_aggregate_read(const char* path, const ty_mesh* points_p
 
 // Our own bounded check of a GLB's header, chunks and lengths, before any library sees it. For fuzzing too.
 TY_CHECKED ty_status ty_glb_check(const char* name, const void* bytes, size_t size, ty_error* error);
+
+// All that ty_aggregate_read checks of a GLB before the importer sees it: the above, and every count, index and length
+// in its JSON against the bytes.
+TY_CHECKED ty_status ty_aggregate_check(const char* name, const void* bytes, size_t size, ty_error* error);
