@@ -3,6 +3,7 @@
 #include "sanitize.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
@@ -19,17 +20,11 @@
 
 enum
 {
-    result_magic = 0x74795f31,
     poll_slice = 50 // milliseconds between two looks at the clock and the cancel flag
 };
 
-// What the child says at its end, in one write that is below PIPE_BUF.
-typedef struct child_result
-{
-    int32_t magic;
-    ty_error error;
-} child_result;
-_Static_assert(sizeof(child_result) <= 4096, "the result fits a pipe without a reader");
+// What the child says at its end is its ty_error, in one write.
+_Static_assert(sizeof(ty_error) <= PIPE_BUF, "it fits a pipe without a reader");
 
 typedef struct child_run
 {
@@ -39,7 +34,7 @@ typedef struct child_run
     double deadline;
     ty_bytes output;
     size_t capacity;
-    child_result result;
+    ty_error result;
     size_t result_size;
 } child_run;
 
@@ -108,11 +103,9 @@ static _Noreturn void child_main(const child_run* run, int output_fd, int result
     if (null_fd >= 0 && output_fd > STDERR_FILENO && result_fd > STDERR_FILENO)
         dup2(null_fd, STDOUT_FILENO);
     limits_apply(&run->def);
-    child_result result;
+    ty_error result;
     memset(&result, 0, sizeof(result));
-    result.magic = result_magic;
-    ty_status status = fn(context, output_fd, &result.error);
-    result.error.status = status;
+    result.status = fn(context, output_fd, &result);
     close(output_fd);
     ty_status sent = ty_child_write(result_fd, &result, sizeof(result), NULL);
     _exit(sent ? TY_INTERNAL : TY_OK);
@@ -233,7 +226,7 @@ static void child_kill(child_run* run)
 // From the way the child ended and what it said to a status.
 static ty_status child_judge(child_run* run, int wait_status, ty_error* error)
 {
-    child_result* result = &run->result;
+    ty_error* result = &run->result;
     if (WIFSIGNALED(wait_status) && WTERMSIG(wait_status) == SIGXCPU)
         return ty_error_set(error, TY_BAD_FILE, "the importer took more than %g seconds", run->def.seconds);
     if (WIFSIGNALED(wait_status))
@@ -242,17 +235,17 @@ static ty_status child_judge(child_run* run, int wait_status, ty_error* error)
     if (WEXITSTATUS(wait_status) == TY_NO_MEMORY && run->result_size == 0)
         return ty_error_set(error, TY_BAD_FILE, "the importer needs more than %zu MB of memory",
                             run->def.memory_bytes >> 20);
-    if (WEXITSTATUS(wait_status) != TY_OK || run->result_size != sizeof(*result) || result->magic != result_magic)
+    if (WEXITSTATUS(wait_status) != TY_OK || run->result_size != sizeof(*result))
         return ty_error_set(error, TY_BAD_FILE, "the importer ended without a result (exit status %d)",
                             WEXITSTATUS(wait_status));
-    if (result->error.status == TY_OK)
+    if (result->status == TY_OK)
         return TY_OK;
     // Foreign code ran beside this text.
-    result->error.file[sizeof(result->error.file) - 1] = 0;
-    result->error.text[sizeof(result->error.text) - 1] = 0;
+    result->file[sizeof(result->file) - 1] = 0;
+    result->text[sizeof(result->text) - 1] = 0;
     if (error)
-        *error = result->error;
-    return result->error.status;
+        *error = *result;
+    return result->status;
 }
 
 static ty_status child_start(child_run* run, ty_child_fn* fn, const void* context, ty_error* error)

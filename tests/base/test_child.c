@@ -4,6 +4,7 @@
 #include "cmocka_all.h"
 #include "process.h"
 #include <fcntl.h>
+#include <malloc.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -274,6 +275,7 @@ static void test_parent_without_memory(void** state)
 
 int main(void)
 {
+    mallopt(M_PERTURB, 0x5a); // fresh memory is not zero by chance
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_output_of_any_size),
         cmocka_unit_test(test_error_comes_back),
