@@ -316,6 +316,51 @@ static void test_merge_refuses_what_does_not_fit(void** state)
     assert_merge_fails((const char*[]){a, c}, 2, state, "not a part");
 }
 
+// One thing wrong in a part at a time.
+static void test_merge_refuses_damaged_parts(void** state)
+{
+    const char* expected[] = {"part.R.1 is missing",   "channels differ", "holds 17 samples", "range is damaged",
+                              "worldToNDC is missing", "not a part",      "display window"};
+    ty_scene scene = scene_make();
+    for (int kind = 0; kind < 7; ++kind)
+    {
+        const char *path = path_of(state, "damaged.exr"), *good = path_of(state, "good.exr");
+        ty_film* film = film_make(0, 16, TY_AOV_ALL);
+        film_fill(film, 0, 16);
+        ty_film_write how = {&scene, 0, 16, true, false};
+        ty_exr* exr;
+        assert_int_equal(ty_film_to_exr(film, &how, &exr, NULL), TY_OK);
+        for (int i = 0; i < exr->channel_count; ++i)
+        {
+            ty_exr_channel* c = &exr->channels[i];
+            if ((kind == 0 && !strcmp(c->name, "part.R.1")) || (kind == 1 && !strcmp(c->name, "Z")))
+                strcpy(c->name, kind ? "Zback" : "part.R.7");
+            if (kind == 2 && !strcmp(c->name, "part.samples.0"))
+                ((uint32_t*)c->pixels)[40] = 17;
+        }
+        for (int i = 0; i < exr->attribute_count; ++i)
+        {
+            ty_exr_attribute* a = &exr->attributes[i];
+            if (kind == 3 && !strcmp(a->name, "tsuya/samples"))
+                memcpy(a->text, "9-0 ", 4);
+            if ((kind == 4 && !strcmp(a->name, "worldToNDC")) || (kind == 5 && !strcmp(a->name, "tsuya/part")))
+                a->name[0] = 'x';
+        }
+        if (kind == 6)
+            exr->display_window[0] = -1;
+        assert_int_equal(ty_exr_write(path, exr, NULL), TY_OK);
+        // A part without Z counts as one that was not asked for Z: its channels differ from the good part's.
+        write_range(&scene, 16, 32, TY_AOV_ALL, true, good);
+        ty_error error = {0};
+        const char* parts[] = {path, good};
+        assert_int_equal(ty_film_merge(parts, 2, path_of(state, "out.exr"), &error), TY_BAD_FILE);
+        if (!strstr(error.text, expected[kind]))
+            fail_msg("message \"%s\" does not say \"%s\"", error.text, expected[kind]);
+        ty_exr_destroy(exr);
+        ty_film_destroy(film);
+    }
+}
+
 static void test_attributes_and_channels(void** state)
 {
     ty_scene scene = scene_make();
@@ -379,6 +424,7 @@ int main(void)
         cmocka_unit_test(test_setup_is_checked),
         cmocka_unit_test_setup_teardown(test_merge_gives_the_same_bytes, place_make, place_remove),
         cmocka_unit_test_setup_teardown(test_merge_refuses_what_does_not_fit, place_make, place_remove),
+        cmocka_unit_test_setup_teardown(test_merge_refuses_damaged_parts, place_make, place_remove),
         cmocka_unit_test_setup_teardown(test_attributes_and_channels, place_make, place_remove),
         cmocka_unit_test_setup_teardown(test_partial_film, place_make, place_remove),
     };
