@@ -85,26 +85,26 @@ static double triangle_area(const ty_mesh* mesh, uint32_t triangle)
 ty_status ty_mesh_validate(const ty_mesh* mesh, const char* name, ty_error* error)
 {
     if (mesh->vertex_count == 0 || mesh->triangle_count == 0)
-        return ty_error_set(error, TY_BAD_FILE, "%s: mesh has no %s", name,
-                            mesh->vertex_count == 0 ? "vertices" : "triangles");
+        return ty_error_set_at(error, TY_BAD_FILE, name, 0, 0, "mesh has no %s",
+                               mesh->vertex_count == 0 ? "vertices" : "triangles");
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
     {
         ty_vec3 p = mesh->positions[i];
         if (!ty_is_finite3(p))
-            return ty_error_set(error, TY_BAD_FILE, "%s: vertex %u is not finite (%g, %g, %g)", name, i, (double)p.x,
-                                (double)p.y, (double)p.z);
+            return ty_error_set_at(error, TY_BAD_FILE, name, 0, 0, "vertex %u is not finite (%g, %g, %g)", i,
+                                   (double)p.x, (double)p.y, (double)p.z);
     }
     double area = 0.0;
     for (uint32_t i = 0; i < mesh->triangle_count; i++)
     {
         for (int k = 0; k < 3; k++)
             if (mesh->triangles[i][k] >= mesh->vertex_count)
-                return ty_error_set(error, TY_BAD_FILE, "%s: triangle %u names vertex %u of %u", name, i,
-                                    mesh->triangles[i][k], mesh->vertex_count);
+                return ty_error_set_at(error, TY_BAD_FILE, name, 0, 0, "triangle %u names vertex %u of %u", i,
+                                       mesh->triangles[i][k], mesh->vertex_count);
         area += triangle_area(mesh, i);
     }
     if (!(area > 0.0))
-        return ty_error_set(error, TY_BAD_FILE, "%s: mesh has no area", name);
+        return ty_error_set_at(error, TY_BAD_FILE, name, 0, 0, "mesh has no area");
     return TY_OK;
 }
 

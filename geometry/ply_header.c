@@ -164,6 +164,7 @@ ty_status ply_open(ply_file* file, const char* name, const void* bytes, size_t s
         if (strcmp(text, "end_header") == 0)
         {
             file->format = file->data_format;
+            file->line++; // reading goes on in the next one
             return TY_OK;
         }
         ty_status status = parse_line(file, text);

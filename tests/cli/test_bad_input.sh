@@ -124,7 +124,7 @@ refused 4 "bad.png"
 base >scene.yaml
 expect 4 "$tsuya" render scene.yaml -o nowhere/out.exr
 says "nowhere"
-expect 4 "$tsuya" render scene.yaml -o /dev/full.exr
+expect 4 "$tsuya" render scene.yaml -o /proc/out.exr
 mkdir folder.exr
 expect 4 "$tsuya" render scene.yaml -o folder.exr
 cp good.exr kept.exr
