@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+// Built-in shapes: their parameters, what sizes are possible, and which file makes which.
+#include "shape_build.h"
+
+ty_shape_def ty_shape_def_default(void)
+{
+    return (ty_shape_def){
+        .kind = TY_SHAPE_SPHERE,
+        .radius = 0.06f,
+        .size = {0.05f, 0.05f, 0.05f},
+        .height = 0.06f,
+        .tube = 0.02f,
+        .thickness = 0.003f,
+        .foot_radius = 0.024f,
+        .foot_height = 0.007f,
+        .curve = 2.2f,
+        .rounding = 0.0f,
+        .divisions = 64,
+    };
+}
+
+static void set_default(void* def)
+{
+    *(ty_shape_def*)def = ty_shape_def_default();
+}
+
+static const char* const kinds[] = {"sphere", "ellipsoid", "box",  "cylinder", "torus", "plane",
+                                    "disc",   "bowl",      "dome", "sweep",    NULL};
+
+#define LENGTH(field, help)                                                                                            \
+    {                                                                                                                  \
+#field, TY_PARAM_FLOAT, "m", 0, 1e4, NULL, NULL, offsetof(ty_shape_def, field), help, false                    \
+    }
+
+static const ty_param rows[] = {
+    {"shape", TY_PARAM_ENUM, "", 0, 0, kinds, NULL, offsetof(ty_shape_def, kind), "which shape", true},
+    LENGTH(radius, "sphere, cylinder, disc, dome; torus: to the tube's centre; bowl: outside of the rim"),
+    {"size", TY_PARAM_FLOAT3, "m", 0, 1e4, NULL, NULL, offsetof(ty_shape_def, size),
+     "ellipsoid: semi-axes; box, plane: half extents; sweep: half width, wall height, half depth", false},
+    LENGTH(height, "cylinder, bowl, dome"),
+    LENGTH(tube, "torus: radius of the tube"),
+    LENGTH(thickness, "bowl: of the wall"),
+    LENGTH(foot_radius, "bowl: outside of the foot ring"),
+    LENGTH(foot_height, "bowl: of the foot ring"),
+    {"curve", TY_PARAM_FLOAT, "", 1, 12, NULL, NULL, offsetof(ty_shape_def, curve),
+     "bowl profile: 1 = cone, 2 = parabola, higher = fuller", false},
+    LENGTH(rounding, "box, cylinder: radius of the edges; sweep: of the bend"),
+    {"divisions", TY_PARAM_INT, "", 8, 4096, NULL, NULL, offsetof(ty_shape_def, divisions),
+     "segments around; the other direction follows the shape", false},
+};
+
+static const ty_param_table table = {
+    "asset.shape",       "A built-in shape as a mesh; y is up.", sizeof(ty_shape_def), set_default, rows,
+    TY_PARAM_COUNT(rows)};
+
+const ty_param_table* ty_shape_params(void)
+{
+    return &table;
+}
+
+static ty_status check_length(const char* name, float value, ty_error* error)
+{
+    // Beyond these the squares and cubes of float coordinates leave their range.
+    if (value >= 1e-6f && value <= 1e4f)
+        return TY_OK;
+    return ty_error_set(error, TY_BAD_INPUT, "%s: %g m: must be within 1e-06 .. 10000 m", name, (double)value);
+}
+
+static ty_status check_size(const ty_shape_def* def, bool x, bool y, bool z, ty_error* error)
+{
+    ty_status status = x ? check_length("size (x)", def->size.x, error) : TY_OK;
+    if (status == TY_OK && y)
+        status = check_length("size (y)", def->size.y, error);
+    if (status == TY_OK && z)
+        status = check_length("size (z)", def->size.z, error);
+    return status;
+}
+
+// 0 is allowed unless needed.
+static ty_status check_rounding(const ty_shape_def* def, float most, bool needed, ty_error* error)
+{
+    if (def->rounding == 0.0f && !needed)
+        return TY_OK;
+    if (def->rounding >= 1e-6f && def->rounding <= most)
+        return TY_OK;
+    return ty_error_set(error, TY_BAD_INPUT, "rounding: %g m: must be %s1e-06 .. %g m for these sizes",
+                        (double)def->rounding, needed ? "within " : "0 or within ", (double)most);
+}
+
+static ty_status check_torus(const ty_shape_def* def, ty_error* error)
+{
+    ty_status status = check_length("tube", def->tube, error);
+    if (status == TY_OK && !(def->tube < def->radius))
+        status = ty_error_set(error, TY_BAD_INPUT, "tube: %g m: must be smaller than the radius, %g m",
+                              (double)def->tube, (double)def->radius);
+    return status;
+}
+
+static ty_status check_bowl(const ty_shape_def* def, ty_error* error)
+{
+    ty_status status = check_length("height", def->height, error);
+    if (status == TY_OK)
+        status = check_length("thickness", def->thickness, error);
+    if (status == TY_OK)
+        status = check_length("foot_radius", def->foot_radius, error);
+    if (status == TY_OK)
+        status = check_length("foot_height", def->foot_height, error);
+    if (status == TY_OK && !(def->curve >= 1.0f && def->curve <= 12.0f))
+        status = ty_error_set(error, TY_BAD_INPUT, "curve: %g: must be within 1 .. 12", (double)def->curve);
+    return status == TY_OK ? ty_shape_check_bowl(def, error) : status;
+}
+
+static ty_status check_extents(const ty_shape_def* def, ty_error* error)
+{
+    ty_status status = TY_OK;
+    ty_vec3 s = def->size;
+    switch ((ty_shape_kind)def->kind)
+    {
+    case TY_SHAPE_ELLIPSOID:
+        return check_size(def, true, true, true, error);
+    case TY_SHAPE_BOX:
+        status = check_size(def, true, true, true, error);
+        return status == TY_OK ? check_rounding(def, ty_min(s.x, ty_min(s.y, s.z)), false, error) : status;
+    case TY_SHAPE_PLANE:
+        return check_size(def, true, false, true, error);
+    case TY_SHAPE_SWEEP:
+        status = check_size(def, true, true, true, error);
+        return status == TY_OK ? check_rounding(def, ty_min(s.y, 2.0f * s.z), true, error) : status;
+    case TY_SHAPE_CYLINDER:
+    case TY_SHAPE_DOME:
+        status = check_length("height", def->height, error);
+        if (status == TY_OK && def->kind == TY_SHAPE_CYLINDER)
+            status = check_rounding(def, ty_min(def->radius, 0.5f * def->height), false, error);
+        return status;
+    case TY_SHAPE_TORUS:
+        return check_torus(def, error);
+    case TY_SHAPE_BOWL:
+        return check_bowl(def, error);
+    case TY_SHAPE_SPHERE:
+    case TY_SHAPE_DISC:
+        break;
+    }
+    return TY_OK;
+}
+
+static ty_status check_def(const ty_shape_def* def, ty_error* error)
+{
+    if (def->kind < 0 || def->kind > TY_SHAPE_SWEEP)
+        return ty_error_set(error, TY_BAD_INPUT, "shape: %d: no such shape", def->kind);
+    if (def->divisions < 8 || def->divisions > 4096)
+        return ty_error_set(error, TY_BAD_INPUT, "divisions: %d: must be within 8 .. 4096", def->divisions);
+    bool has_radius = def->kind != TY_SHAPE_ELLIPSOID && def->kind != TY_SHAPE_BOX && def->kind != TY_SHAPE_PLANE &&
+                      def->kind != TY_SHAPE_SWEEP;
+    ty_status status = has_radius ? check_length("radius", def->radius, error) : TY_OK;
+    return status == TY_OK ? check_extents(def, error) : status;
+}
+
+// The ball is stretched afterwards: a linear map carries normals and curvatures exactly.
+static void stretch_ball(const ty_shape_def* def, ty_mesh* mesh)
+{
+    ty_vec3 s = def->kind == TY_SHAPE_SPHERE ? ty_vec3_make(def->radius, def->radius, def->radius) : def->size;
+    ty_affine m = {{s.x, 0, 0}, {0, s.y, 0}, {0, 0, s.z}, {0, 0, 0}};
+    ty_mesh_transform(mesh, &m);
+}
+
+static void build_kind(ty_shape_build* build, const ty_shape_def* def)
+{
+    switch ((ty_shape_kind)def->kind)
+    {
+    case TY_SHAPE_SPHERE:
+    case TY_SHAPE_ELLIPSOID:
+        ty_shape_build_ball(build, def->divisions);
+        break;
+    case TY_SHAPE_BOX:
+        ty_shape_build_box(build, def);
+        break;
+    case TY_SHAPE_CYLINDER:
+        ty_shape_build_cylinder(build, def);
+        break;
+    case TY_SHAPE_TORUS:
+        ty_shape_build_torus(build, def);
+        break;
+    case TY_SHAPE_PLANE:
+        ty_shape_build_plane(build, def);
+        break;
+    case TY_SHAPE_DISC:
+        ty_shape_build_disc(build, def);
+        break;
+    case TY_SHAPE_BOWL:
+        ty_shape_build_bowl(build, def);
+        break;
+    case TY_SHAPE_DOME:
+        ty_shape_build_dome(build, def);
+        break;
+    case TY_SHAPE_SWEEP:
+        ty_shape_build_sweep(build, def);
+        break;
+    }
+}
+
+ty_status ty_shape_create(const ty_shape_def* def, ty_mesh** out, ty_error* error)
+{
+    *out = NULL;
+    ty_status status = check_def(def, error);
+    if (status != TY_OK)
+        return status;
+    ty_shape_build build = {0};
+    build_kind(&build, def);
+    status = ty_shape_finish(&build, out, error);
+    if (status == TY_OK && (def->kind == TY_SHAPE_SPHERE || def->kind == TY_SHAPE_ELLIPSOID))
+        stretch_ball(def, *out);
+    return status;
+}
