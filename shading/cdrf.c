@@ -63,6 +63,7 @@ void ty_cdrf_prepare(const ty_material* material, const ty_shading_context* cont
 
 float ty_cdrf_spread(const ty_bsdf* b, float curvature)
 {
+    curvature = ty_max(curvature, 0.0f);
     if (b->sigma_slope > 0.0f)
         return b->sigma_slope * curvature;
     float x = b->mean_free_path * curvature;

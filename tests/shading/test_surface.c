@@ -202,6 +202,33 @@ static void test_smooth_glass_is_fresnel(void** state)
     ty_material_destroy(m);
 }
 
+static void test_within_partly_clear_bodies(void** state)
+{
+    (void)state;
+    // A weak specular does not let light out where it is totally reflected.
+    ty_surface_def d = glass(0);
+    d.specular_weight = ty_input_scalar(0.3f);
+    ty_material* m = surface(&d);
+    ty_bsdf b = bsdf_at(m, M_PI - 0.9);
+    assert_near(mean_weight(&b, 1000).g, 1.0, 1e-4);
+    ty_material_destroy(m);
+    // Half clear, half white: nothing is created on either side.
+    for (int smooth = 0; smooth < 2; smooth++)
+    {
+        d = white(1, smooth ? 0.0f : 0.3f);
+        d.transmission_weight = ty_input_scalar(0.5f);
+        m = surface(&d);
+        for (int a = 0; a < 4; a++)
+        {
+            b = bsdf_at(m, M_PI - angles[a]);
+            assert_in_range((long)(1e4f * mean_weight(&b, 100000).g), 9000, 10040);
+            b = bsdf_at(m, angles[a]);
+            assert_in_range((long)(1e4f * mean_weight(&b, 100000).g), 9500, 10040);
+        }
+        ty_material_destroy(m);
+    }
+}
+
 static void test_rough_lobes_lose_little(void** state)
 {
     (void)state;
@@ -337,6 +364,7 @@ int main(void)
         cmocka_unit_test(test_white_under_specular_keeps_energy),
         cmocka_unit_test(test_varying_roughness_uses_the_same_table),
         cmocka_unit_test(test_smooth_glass_is_fresnel),
+        cmocka_unit_test(test_within_partly_clear_bodies),
         cmocka_unit_test(test_rough_lobes_lose_little),
         cmocka_unit_test(test_reflection_is_reciprocal),
         cmocka_unit_test(test_back_of_opaque_is_front),
