@@ -8,7 +8,7 @@
 
 enum
 {
-    TY_GRAIN_BALLS = 8,       // per grain: two rows, so that an elliptical section is met
+    TY_GRAIN_BALLS = 8, // per grain: two rows, so that an elliptical section is met
     TY_GRAIN_MAX_VARIANTS = 64,
 };
 

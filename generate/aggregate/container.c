@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: Apache-2.0
+// Containers as sampled distance fields: a half-plane table for turned shapes, a grid for meshes, planes for the box.
+#include <string.h>
+#include <tsuya/generate/container.h>
+#include <tsuya/geometry/mesh_file.h>
+#include <tsuya/geometry/trace.h>
+
+enum
+{
+    TURNED_NODES = 224,  // in each direction of the half-plane
+    GRID_NODES = 500000, // about, in all
+};
+
+typedef struct node
+{
+    float gap;
+    ty_vec3 normal; // turned shapes: (radial, up, 0)
+} node;
+
+struct ty_container
+{
+    ty_container_def def;
+    int size[3]; // nodes; size[2] = 1 for turned shapes
+    ty_vec3 origin;
+    float step;
+    node* nodes;
+    ty_bounds interior;
+};
+
+ty_container_def ty_container_def_default(void)
+{
+    ty_container_def def = {.kind = TY_CONTAINER_BOWL, .mesh = NULL, .shape = ty_shape_def_default()};
+    def.shape.kind = TY_SHAPE_BOWL;
+    return def;
+}
+
+bool ty_container_is_open(const ty_container* c)
+{
+    return c->def.kind == TY_CONTAINER_BOWL || c->def.kind == TY_CONTAINER_BOX;
+}
+
+bool ty_container_is_turned(const ty_container* c)
+{
+    return c->def.kind != TY_CONTAINER_BOX && c->def.kind != TY_CONTAINER_MESH;
+}
+
+ty_bounds ty_container_interior(const ty_container* c)
+{
+    return c->interior;
+}
+
+// --- lookup ---
+
+static const node* node_at(const ty_container* c, int i, int j, int k)
+{
+    return &c->nodes[((size_t)k * (size_t)c->size[1] + (size_t)j) * (size_t)c->size[0] + (size_t)i];
+}
+
+// Cell and fraction of a coordinate; what lies outside of the table is clamped and adds to *beyond.
+static int cell_of(float x, int size, float step, float* fraction, float* beyond)
+{
+    float clamped = ty_clamp(x, 0.0f, (float)(size - 1));
+    *beyond += fabsf(x - clamped) * step;
+    int i = (int)clamped;
+    if (i > size - 2)
+        i = size > 1 ? size - 2 : 0;
+    *fraction = size > 1 ? clamped - (float)i : 0.0f;
+    return i;
+}
+
+static float field_lookup(const ty_container* c, ty_vec3 q, ty_vec3* normal)
+{
+    float f[3], beyond = 0.0f;
+    int i = cell_of((q.x - c->origin.x) / c->step, c->size[0], c->step, &f[0], &beyond);
+    int j = cell_of((q.y - c->origin.y) / c->step, c->size[1], c->step, &f[1], &beyond);
+    int k = c->size[2] > 1 ? cell_of((q.z - c->origin.z) / c->step, c->size[2], c->step, &f[2], &beyond) : 0;
+    int corners = c->size[2] > 1 ? 8 : 4;
+    float gap = 0.0f;
+    ty_vec3 n = {0.0f, 0.0f, 0.0f};
+    for (int e = 0; e < corners; e++)
+    {
+        float w = (e & 1 ? f[0] : 1.0f - f[0]) * (e & 2 ? f[1] : 1.0f - f[1]);
+        if (corners == 8)
+            w *= e & 4 ? f[2] : 1.0f - f[2];
+        const node* at = node_at(c, i + (e & 1), j + (e >> 1 & 1), k + (e >> 2));
+        gap += w * at->gap;
+        n = ty_mad(n, at->normal, w);
+    }
+    *normal = ty_normalize(n);
+    return gap + beyond;
+}
+
+static float turned_wall(const ty_container* c, ty_vec3 p, ty_vec3* normal)
+{
+    float rho = sqrtf(p.x * p.x + p.z * p.z);
+    ty_vec3 n;
+    float gap = field_lookup(c, ty_vec3_make(rho, p.y, 0.0f), &n);
+    float s = rho > 1e-9f ? n.x / rho : 0.0f;
+    *normal = ty_normalize(ty_vec3_make(p.x * s, n.y, p.z * s));
+    return gap;
+}
+
+static float box_wall(const ty_container* c, int wall, ty_vec3 p, ty_vec3* normal)
+{
+    ty_vec3 h = c->def.shape.size;
+    float side = wall & 1 ? 1.0f : -1.0f;
+    switch (wall)
+    {
+    case 0:
+        *normal = ty_vec3_make(0.0f, 1.0f, 0.0f);
+        return p.y + h.y;
+    case 1:
+    case 2:
+        *normal = ty_vec3_make(-side, 0.0f, 0.0f);
+        return h.x - side * p.x;
+    default:
+        *normal = ty_vec3_make(0.0f, 0.0f, -side);
+        return h.z - side * p.z;
+    }
+}
+
+int ty_container_wall_count(const ty_container* c)
+{
+    return c->def.kind == TY_CONTAINER_BOX ? 5 : 1;
+}
+
+float ty_container_wall(const ty_container* c, int wall, ty_vec3 p, ty_vec3* normal)
+{
+    if (c->def.kind == TY_CONTAINER_BOX)
+        return box_wall(c, wall, p, normal);
+    return ty_container_is_turned(c) ? turned_wall(c, p, normal) : field_lookup(c, p, normal);
+}
+
+bool ty_container_holds(const ty_container* c, ty_vec3 p)
+{
+    ty_vec3 n;
+    if (c->def.kind == TY_CONTAINER_MESH)
+        return field_lookup(c, p, &n) > 0.0f;
+    return ty_shape_interior_distance(&c->def.shape, p) < 0.0f;
+}
+
+bool ty_container_lost(const ty_container* c, ty_vec3 p)
+{
+    return c->def.kind == TY_CONTAINER_BOWL && p.x * p.x + p.z * p.z > ty_sqr(c->def.shape.radius);
+}
+
+// --- sampling ---
+
+typedef struct sampling
+{
+    ty_container* container;
+    const ty_world* world;
+    uint32_t prototype;
+} sampling;
+
+static void sample_rows(void* context, int64_t begin, int64_t end, int worker)
+{
+    (void)worker;
+    const sampling* s = context;
+    ty_container* c = s->container;
+    bool solid = c->def.kind == TY_CONTAINER_BOWL; // the mesh is the wall itself, not the space
+    for (int64_t row = begin; row < end; row++)
+        for (int i = 0; i < c->size[0]; i++)
+        {
+            int j = (int)(row % c->size[1]), k = (int)(row / c->size[1]);
+            ty_vec3 p = ty_add(c->origin, ty_mul(ty_vec3_make((float)i, (float)j, (float)k), c->step));
+            ty_closest closest = {.distance = 0.0f};
+            bool found = ty_world_closest(s->world, s->prototype, p, 1e3f, &closest);
+            TY_ASSERT(found);
+            float gap = ty_world_inside(s->world, s->prototype, p) == solid ? -closest.distance : closest.distance;
+            c->nodes[(size_t)row * (size_t)c->size[0] + (size_t)i].gap = solid ? ty_min(gap, p.y) : gap;
+        }
+}
+
+static float difference(const ty_container* c, int axis, int i, int j, int k)
+{
+    int at[3] = {i, j, k}, low[3] = {i, j, k}, high[3] = {i, j, k};
+    if (c->size[axis] < 2)
+        return 0.0f;
+    low[axis] = at[axis] > 0 ? at[axis] - 1 : 0;
+    high[axis] = at[axis] < c->size[axis] - 1 ? at[axis] + 1 : at[axis];
+    float d = node_at(c, high[0], high[1], high[2])->gap - node_at(c, low[0], low[1], low[2])->gap;
+    return d / ((float)(high[axis] - low[axis]) * c->step);
+}
+
+static void sample_normals(ty_container* c)
+{
+    node* out = c->nodes;
+    for (int k = 0; k < c->size[2]; k++)
+        for (int j = 0; j < c->size[1]; j++)
+            for (int i = 0; i < c->size[0]; i++, out++)
+            {
+                out->normal =
+                    ty_vec3_make(difference(c, 0, i, j, k), difference(c, 1, i, j, k), difference(c, 2, i, j, k));
+                if (i == 0 && c->size[2] == 1)
+                    out->normal.x = 0.0f; // on the axis of a turned shape
+            }
+}
+
+// Lays the table over the mesh: the half-plane z = 0, x >= 0 of a turned shape, or the whole box.
+static void table_place(ty_container* c, ty_bounds b)
+{
+    ty_vec3 extent = ty_sub(b.high, b.low);
+    float pad = 0.06f * ty_max(extent.x, ty_max(extent.y, extent.z));
+    if (ty_container_is_turned(c))
+    {
+        float width = 0.5f * extent.x + pad, height = extent.y + 2.0f * pad;
+        c->step = ty_max(width, height) / (float)(TURNED_NODES - 1);
+        c->origin = ty_vec3_make(0.0f, b.low.y - pad, 0.0f);
+        c->size[0] = (int)(width / c->step) + 2;
+        c->size[1] = (int)(height / c->step) + 2;
+        c->size[2] = 1;
+        return;
+    }
+    ty_vec3 size = ty_add(extent, ty_mul(ty_vec3_make(1.0f, 1.0f, 1.0f), 2.0f * pad));
+    c->step = ty_pow(size.x * size.y * size.z / (float)GRID_NODES, 1.0f / 3.0f);
+    c->origin = ty_sub(b.low, ty_vec3_make(pad, pad, pad));
+    c->size[0] = (int)(size.x / c->step) + 2;
+    c->size[1] = (int)(size.y / c->step) + 2;
+    c->size[2] = (int)(size.z / c->step) + 2;
+}
+
+static ty_status field_sample(ty_container* c, const ty_mesh* mesh, ty_workers* workers, ty_error* error)
+{
+    table_place(c, mesh->bounds);
+    size_t rows = (size_t)c->size[1] * (size_t)c->size[2];
+    c->nodes = TY_TRY_ALLOC(node, rows * (size_t)c->size[0]);
+    if (!c->nodes)
+        return ty_error_set(error, TY_NO_MEMORY, "no memory for the container's distance field");
+    ty_world_def def = ty_world_def_default();
+    ty_world* world;
+    ty_status status = ty_world_create(&def, &world, error);
+    if (status != TY_OK)
+        return status;
+    sampling s = {c, world, 0};
+    status = ty_world_add_prototype(world, mesh, &s.prototype, error);
+    if (status == TY_OK)
+        status = ty_world_commit(world, error);
+    if (status == TY_OK && !ty_parallel_for(workers, (int64_t)rows, 8, sample_rows, &s))
+        status = ty_error_set(error, TY_INTERRUPTED, "interrupted while sampling the container");
+    if (status == TY_OK)
+        sample_normals(c);
+    ty_world_destroy(world);
+    return status;
+}
+
+// --- creation ---
+
+// How far the hollow reaches from a point of the axis in it, along direction, up to limit; by bisection.
+static float hollow_reach(const ty_shape_def* shape, ty_vec3 from, ty_vec3 direction, float limit)
+{
+    float low = 0.0f, high = limit;
+    for (int i = 0; i < 40; i++)
+    {
+        float middle = 0.5f * (low + high);
+        bool in = ty_shape_interior_distance(shape, ty_mad(from, direction, middle)) < 0.0f;
+        *(in ? &low : &high) = middle;
+    }
+    return low;
+}
+
+// The hollow below the rim: its depth on the axis, and its width just below the rim.
+static ty_bounds bowl_interior(const ty_shape_def* shape, ty_bounds outside)
+{
+    float height = outside.high.y - outside.low.y, step = height / 512.0f, rim = outside.high.y;
+    while (rim > outside.low.y && ty_shape_interior_distance(shape, ty_vec3_make(0.0f, rim - step, 0.0f)) >= 0.0f)
+        rim -= step;
+    ty_vec3 top = {0.0f, rim - step, 0.0f};
+    float depth = hollow_reach(shape, top, ty_vec3_make(0.0f, -1.0f, 0.0f), height);
+    float radius = hollow_reach(shape, top, ty_vec3_make(1.0f, 0.0f, 0.0f), shape->radius);
+    return (ty_bounds){{-radius, top.y - depth, -radius}, {radius, rim, radius}};
+}
+
+static ty_status mesh_load(const ty_container_def* def, ty_mesh** mesh, ty_error* error)
+{
+    if (!def->mesh || !def->mesh[0])
+        return ty_error_set(error, TY_BAD_INPUT, "container.mesh: a path is needed with shape mesh");
+    ty_status status = ty_mesh_read(def->mesh, mesh, error);
+    if (status != TY_OK)
+        return status;
+    ty_mesh_topology topology;
+    ty_mesh_analyse(*mesh, &topology);
+    if (topology.closed)
+        return TY_OK;
+    ty_mesh_destroy(*mesh);
+    *mesh = NULL;
+    return ty_error_set(
+        error, TY_BAD_INPUT,
+        "container.mesh: %s is not a closed outward surface (%u open edges, %u with more than two faces)", def->mesh,
+        topology.boundary_edges, topology.nonmanifold_edges);
+}
+
+static const int shape_kinds[] = {TY_SHAPE_BOWL, TY_SHAPE_BOX, TY_SHAPE_SPHERE, TY_SHAPE_DOME};
+
+ty_status ty_container_create(const ty_container_def* def, ty_workers* workers, ty_container** out, ty_error* error)
+{
+    *out = NULL;
+    ty_container* c = TY_ALLOC(ty_container, 1);
+    c->def = *def;
+    ty_mesh* mesh = NULL;
+    ty_status status;
+    if (def->kind == TY_CONTAINER_MESH)
+        status = mesh_load(def, &mesh, error);
+    else
+    {
+        c->def.shape.kind = shape_kinds[def->kind];
+        status = ty_shape_create(&c->def.shape, &mesh, error);
+    }
+    if (status == TY_OK)
+    {
+        c->interior = def->kind == TY_CONTAINER_BOWL ? bowl_interior(&c->def.shape, mesh->bounds) : mesh->bounds;
+        if (def->kind != TY_CONTAINER_BOX)
+            status = field_sample(c, mesh, workers, error);
+    }
+    ty_mesh_destroy(mesh);
+    if (status == TY_OK)
+        *out = c;
+    else
+        ty_container_destroy(c);
+    return status;
+}
+
+void ty_container_destroy(ty_container* c)
+{
+    if (!c)
+        return;
+    ty_free(c->nodes);
+    ty_free(c);
+}

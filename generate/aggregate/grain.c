@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rice grain: a box grid wrapped around a superellipsoid and bent, tapered, ridged and dented into a cooked grain.
+#include "balls.h"
+#include <string.h>
+#include <tsuya/generate/grain.h>
+
+// What makes one variant differ from the next.
+typedef struct shape
+{
+    float a, b, c; // m, half sizes
+    float taper;   // of the section, over half the length
+    float bend;    // m, sagitta of the axis
+    float twist;   // rad over half the length
+    float notch;   // m
+    float ridge[2];
+    ty_vec2 ridge_phase[2]; // (cos, sin)
+    ty_vec3 lump_center[3]; // m
+    float lump[3];          // m
+} shape;
+
+ty_grain_def ty_grain_def_default(void)
+{
+    return (ty_grain_def){TY_GRAIN_RICE, 7.2e-3f, 3.0e-3f, 2.5e-3f, 0.06f, 16, 0.10f, 9};
+}
+
+float ty_grain_bell(ty_rng* rng)
+{
+    float sum = 0.0f;
+    for (int i = 0; i < 4; i++)
+        sum += ty_rng_float(rng);
+    return (sum - 2.0f) * 1.73205081f;
+}
+
+static ty_vec3 superellipsoid(const shape* s, ty_vec3 u)
+{
+    const float p = TY_GRAIN_EXPONENT;
+    float k = ty_pow(fabsf(u.x), p) + ty_pow(sqrtf(u.y * u.y + u.z * u.z), p);
+    k = ty_pow(k, -1.0f / p);
+    return ty_vec3_make(s->a * u.x * k, s->b * u.y * k, s->c * u.z * k);
+}
+
+static shape shape_draw(const ty_grain_def* def, ty_seed seed, int variant)
+{
+    ty_rng rng = ty_rng_make(seed, 0x6772616e, (uint64_t)variant);
+    float bell[3];
+    for (int i = 0; i < 3; i++)
+        bell[i] = ty_clamp(ty_grain_bell(&rng), -2.0f, 2.0f) * def->variation;
+    shape s = {.a = 0.5f * def->length * (1.0f + bell[0]), .b = 0.5f * def->width * (1.0f + 0.8f * bell[1])};
+    s.c = 0.5f * def->thickness * (1.0f + 0.4f * bell[1] + 0.7f * bell[2]);
+    s.c = ty_min(s.c, s.b);
+    s.taper = 0.06f + 0.03f * ty_grain_bell(&rng);
+    s.bend = s.a * (0.06f + 0.035f * ty_grain_bell(&rng));
+    s.twist = 0.08f * ty_grain_bell(&rng);
+    s.notch = 2.0f * s.b * def->notch * (1.0f + 0.2f * ty_grain_bell(&rng));
+    for (int i = 0; i < 2; i++)
+    {
+        s.ridge[i] = s.b * (i ? 0.010f : 0.016f);
+        ty_sincos(ty_rng_range(&rng, 0.0f, 2.0f * TY_PI), &s.ridge_phase[i].y, &s.ridge_phase[i].x);
+    }
+    for (int i = 0; i < 3; i++)
+    {
+        ty_vec3 u = {ty_rng_range(&rng, -0.9f, 0.9f), ty_grain_bell(&rng), ty_grain_bell(&rng)};
+        s.lump_center[i] = superellipsoid(&s, ty_normalize(u));
+        s.lump[i] = s.b * 0.035f * ty_grain_bell(&rng);
+    }
+    return s;
+}
+
+// Real part of (y + iz)^order times the conjugate of phase: cos(order * angle - phase) |.|^order.
+static float ridge_wave(float y, float z, int order, ty_vec2 phase)
+{
+    float re = 1.0f, im = 0.0f;
+    for (int i = 0; i < order; i++)
+    {
+        float t = re * y - im * z;
+        im = re * z + im * y;
+        re = t;
+    }
+    return re * phase.x + im * phase.y;
+}
+
+// u is a unit vector; the germ sits at +x, +y.
+static ty_vec3 shape_point(const shape* s, ty_vec3 u, float notch)
+{
+    ty_vec3 p = superellipsoid(s, u);
+    float rho = sqrtf(u.y * u.y + u.z * u.z), radial = 0.0f;
+    if (rho > 0.0f)
+    {
+        float fade = ty_sqr(rho * rho), y = u.y / rho, z = u.z / rho;
+        radial = fade * (s->ridge[0] * ridge_wave(y, z, 4, s->ridge_phase[0]) +
+                         s->ridge[1] * ridge_wave(y, z, 6, s->ridge_phase[1]));
+    }
+    for (int i = 0; i < 3; i++)
+        radial += s->lump[i] * ty_exp(-ty_length_sqr(ty_sub(p, s->lump_center[i])) / (2.0f * s->b * s->b));
+    ty_vec3 germ = superellipsoid(s, ty_vec3_make(0.82f, 0.5723635f, 0.0f));
+    float width = 0.46f * s->b, dent = notch * ty_exp(-ty_length_sqr(ty_sub(p, germ)) / (2.0f * width * width));
+    p = ty_mad(p, u, radial);
+    p = ty_mad(p, ty_normalize(ty_vec3_make(germ.x / ty_sqr(s->a), germ.y / ty_sqr(s->b), 0.0f)), -dent);
+    float x = p.x / s->a, section = 1.0f - s->taper * x, sine, cosine;
+    ty_sincos(s->twist * x, &sine, &cosine);
+    float y = p.y * section, z = p.z * section;
+    return ty_vec3_make(p.x, cosine * y - sine * z + s->bend * (x * x - 0.33f), sine * y + cosine * z);
+}
+
+// --- the box grid: surface points of an nx * n * n lattice, numbered without gaps ---
+
+typedef struct lattice
+{
+    int nx, n;
+    int32_t* index; // [(nx+1)(n+1)(n+1)], -1 inside
+    uint32_t count;
+} lattice;
+
+static bool on_surface(const lattice* g, int i, int j, int k)
+{
+    return i == 0 || j == 0 || k == 0 || i == g->nx || j == g->n || k == g->n;
+}
+
+static int32_t* lattice_at(const lattice* g, int i, int j, int k)
+{
+    return &g->index[((size_t)i * (size_t)(g->n + 1) + (size_t)j) * (size_t)(g->n + 1) + (size_t)k];
+}
+
+static void lattice_number(lattice* g)
+{
+    for (int i = 0; i <= g->nx; i++)
+        for (int j = 0; j <= g->n; j++)
+            for (int k = 0; k <= g->n; k++)
+                *lattice_at(g, i, j, k) = on_surface(g, i, j, k) ? (int32_t)g->count++ : -1;
+}
+
+// The unit vector of a box point in [-1,1]^3: the cube mapped so that areas stay even (Nowell 2005).
+static ty_vec3 cube_to_sphere(ty_vec3 c)
+{
+    float x = c.x * c.x, y = c.y * c.y, z = c.z * c.z;
+    return ty_normalize(ty_vec3_make(c.x * ty_safe_sqrt(1.0f - 0.5f * (y + z) + y * z / 3.0f),
+                                     c.y * ty_safe_sqrt(1.0f - 0.5f * (z + x) + z * x / 3.0f),
+                                     c.z * ty_safe_sqrt(1.0f - 0.5f * (x + y) + x * y / 3.0f)));
+}
+
+static void lattice_directions(const lattice* g, ty_vec3* u)
+{
+    for (int i = 0; i <= g->nx; i++)
+        for (int j = 0; j <= g->n; j++)
+            for (int k = 0; k <= g->n; k++)
+            {
+                int32_t v = *lattice_at(g, i, j, k);
+                if (v < 0)
+                    continue;
+                ty_vec3 c = {2.0f * (float)i / (float)g->nx - 1.0f, 2.0f * (float)j / (float)g->n - 1.0f,
+                             2.0f * (float)k / (float)g->n - 1.0f};
+                u[v] = cube_to_sphere(c);
+            }
+}
+
+// Mean of the lattice neighbours on the ellipsoid of the grain's sizes, as a direction again.
+static ty_vec3 neighbour_mean(const lattice* g, const shape* s, const ty_vec3* u, const int at[3])
+{
+    const int size[3] = {g->nx, g->n, g->n};
+    ty_vec3 sum = {0.0f, 0.0f, 0.0f};
+    for (int axis = 0; axis < 3; axis++)
+        for (int step = -1; step <= 1; step += 2)
+        {
+            int to[3] = {at[0], at[1], at[2]};
+            to[axis] += step;
+            if (to[axis] < 0 || to[axis] > size[axis])
+                continue;
+            int32_t v = *lattice_at(g, to[0], to[1], to[2]);
+            if (v >= 0)
+                sum = ty_add(sum, ty_mul3(u[v], ty_vec3_make(s->a, s->b, s->c)));
+        }
+    return ty_normalize(ty_vec3_make(sum.x / s->a, sum.y / s->b, sum.z / s->c));
+}
+
+// Evens out the triangles: every direction moves to the mean of its neighbours (Jacobi, so that the order is no
+// matter).
+static void lattice_relax(const lattice* g, const shape* s, ty_vec3* u, ty_vec3* scratch)
+{
+    for (int round = 0; round < 24; round++)
+    {
+        for (int i = 0; i <= g->nx; i++)
+            for (int j = 0; j <= g->n; j++)
+                for (int k = 0; k <= g->n; k++)
+                {
+                    int32_t v = *lattice_at(g, i, j, k);
+                    if (v >= 0)
+                        scratch[v] = neighbour_mean(g, s, u, (int[3]){i, j, k});
+                }
+        memcpy(u, scratch, g->count * sizeof *u);
+    }
+}
+
+// Corners counter-clockwise seen from outside; the quad is cut along its shorter diagonal.
+static void quad_emit(ty_mesh* mesh, uint32_t* count, const int32_t q[4])
+{
+    const ty_vec3* p = mesh->positions;
+    bool first = ty_length_sqr(ty_sub(p[q[0]], p[q[2]])) <= ty_length_sqr(ty_sub(p[q[1]], p[q[3]]));
+    static const int cut[2][6] = {{0, 1, 3, 1, 2, 3}, {0, 1, 2, 0, 2, 3}};
+    for (int t = 0; t < 2; t++)
+        for (int e = 0; e < 3; e++)
+            mesh->triangles[*count + (uint32_t)t][e] = (uint32_t)q[cut[first][3 * t + e]];
+    *count += 2;
+}
+
+static void lattice_triangles(const lattice* g, ty_mesh* mesh)
+{
+    uint32_t count = 0;
+    int size[3] = {g->nx, g->n, g->n};
+    for (int axis = 0; axis < 3; axis++)
+    {
+        int b = (axis + 1) % 3, c = (axis + 2) % 3;
+        for (int side = 0; side < 2; side++)
+            for (int s = 0; s < size[b]; s++)
+                for (int t = 0; t < size[c]; t++)
+                {
+                    static const int corner[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+                    int32_t q[4];
+                    for (int e = 0; e < 4; e++)
+                    {
+                        const int* w = corner[side ? e : 3 - e];
+                        int at[3];
+                        at[axis] = side ? size[axis] : 0;
+                        at[b] = s + w[0];
+                        at[c] = t + w[1];
+                        q[e] = *lattice_at(g, at[0], at[1], at[2]);
+                    }
+                    quad_emit(mesh, &count, q);
+                }
+    }
+    TY_ASSERT(count == mesh->triangle_count);
+}
+
+// Volume, centre of mass and inertia per unit mass of the solid, by signed tetrahedra from the origin (Tonon 2004).
+static void mass_properties(const ty_mesh* mesh, double* volume, double center[3], double inertia[6])
+{
+    double v6 = 0.0, first[3] = {0}, second[3][3] = {{0}};
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+    {
+        double p[3][3], sum[3];
+        for (int e = 0; e < 3; e++)
+        {
+            ty_vec3 q = mesh->positions[mesh->triangles[t][e]];
+            p[e][0] = (double)q.x, p[e][1] = (double)q.y, p[e][2] = (double)q.z;
+        }
+        double d = p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) -
+                   p[0][1] * (p[1][0] * p[2][2] - p[1][2] * p[2][0]) +
+                   p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+        v6 += d;
+        for (int i = 0; i < 3; i++)
+        {
+            sum[i] = p[0][i] + p[1][i] + p[2][i];
+            first[i] += d * sum[i] / 4.0;
+        }
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                second[i][j] +=
+                    d * (sum[i] * sum[j] + p[0][i] * p[0][j] + p[1][i] * p[1][j] + p[2][i] * p[2][j]) / 20.0;
+    }
+    *volume = v6 / 6.0;
+    double m[3][3];
+    for (int i = 0; i < 3; i++)
+        center[i] = first[i] / v6;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            m[i][j] = second[i][j] / v6 - center[i] * center[j];
+    inertia[0] = m[1][1] + m[2][2], inertia[1] = m[2][2] + m[0][0], inertia[2] = m[0][0] + m[1][1];
+    inertia[3] = -m[0][1], inertia[4] = -m[0][2], inertia[5] = -m[1][2];
+}
+
+static void symmetric_inverse(const double s[6], float out[6])
+{
+    double xx = s[1] * s[2] - s[5] * s[5], xy = s[4] * s[5] - s[3] * s[2], xz = s[3] * s[5] - s[4] * s[1];
+    double d = s[0] * xx + s[3] * xy + s[4] * xz;
+    out[0] = (float)(xx / d), out[3] = (float)(xy / d), out[4] = (float)(xz / d);
+    out[1] = (float)((s[0] * s[2] - s[4] * s[4]) / d);
+    out[2] = (float)((s[0] * s[1] - s[3] * s[3]) / d);
+    out[5] = (float)((s[3] * s[4] - s[0] * s[5]) / d);
+}
+
+// Moves the centre of mass to the origin; smooth holds the surface without its dent, which the balls are fitted to.
+static void grain_finish(ty_grain* grain, const shape* s, ty_vec3* smooth)
+{
+    ty_mesh* mesh = grain->mesh;
+    double volume, center[3], inertia[6];
+    mass_properties(mesh, &volume, center, inertia);
+    ty_vec3 shift = {(float)center[0], (float)center[1], (float)center[2]};
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+    {
+        mesh->positions[i] = ty_sub(mesh->positions[i], shift);
+        smooth[i] = ty_sub(smooth[i], shift);
+    }
+    grain->volume = (float)volume;
+    symmetric_inverse(inertia, grain->inverse_inertia);
+    grain->width = 2.0f * s->b;
+    ty_balls_fit(smooth, mesh->vertex_count, ty_vec3_make(s->a, s->b, s->c), s->bend, grain);
+    grain->radius = 0.0f;
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        grain->radius = ty_max(grain->radius, ty_length(mesh->positions[i]));
+    for (int i = 0; i < TY_GRAIN_BALLS; i++)
+        grain->radius = ty_max(grain->radius, ty_length(grain->balls[i].center) + grain->balls[i].radius);
+    ty_mesh_compute_bounds(mesh);
+    ty_mesh_compute_welds(mesh);
+    ty_mesh_compute_normals(mesh, TY_PI);
+    ty_mesh_compute_curvature(mesh, 2);
+}
+
+ty_status ty_grain_init(const ty_grain_def* def, ty_seed seed, int variant, ty_grain* out, ty_error* error)
+{
+    memset(out, 0, sizeof *out);
+    shape s = shape_draw(def, seed, variant);
+    lattice g = {.n = def->divisions, .nx = (int)((float)def->divisions * def->length / def->width + 0.5f)};
+    g.index = TY_TRY_ALLOC(int32_t, (size_t)(g.nx + 1) * (size_t)(g.n + 1) * (size_t)(g.n + 1));
+    if (!g.index)
+        return ty_error_set(error, TY_NO_MEMORY, "no memory for a grain of %d divisions", def->divisions);
+    lattice_number(&g);
+    out->mesh = ty_mesh_create(g.count, (uint32_t)(4 * (2 * g.nx * g.n + g.n * g.n)));
+    ty_vec3* smooth = TY_TRY_ALLOC(ty_vec3, g.count);
+    ty_status status = TY_OK;
+    if (out->mesh && smooth)
+    {
+        ty_vec3* u = out->mesh->positions;
+        lattice_directions(&g, u);
+        lattice_relax(&g, &s, u, smooth);
+        for (uint32_t i = 0; i < g.count; i++)
+        {
+            smooth[i] = shape_point(&s, u[i], 0.0f);
+            u[i] = shape_point(&s, u[i], s.notch);
+        }
+        lattice_triangles(&g, out->mesh);
+        grain_finish(out, &s, smooth);
+    }
+    else
+    {
+        ty_grain_term(out);
+        status = ty_error_set(error, TY_NO_MEMORY, "no memory for a grain of %d divisions", def->divisions);
+    }
+    ty_free(smooth);
+    ty_free(g.index);
+    return status;
+}
+
+void ty_grain_term(ty_grain* grain)
+{
+    ty_mesh_destroy(grain->mesh);
+    memset(grain, 0, sizeof *grain);
+}

@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes an aggregate from its recipe: fill, settle, take away what is too much, polish until nothing floats, write
+// down.
+#include "fill.h"
+#include <string.h>
+#include <tsuya/base/log.h>
+
+enum
+{
+    ROUNDS = 12, // of settling and looking for grains that float
+};
+
+#define FALLING_TILT 0.5f // rad, largest angle with the horizontal of a grain that falls onto the pile
+
+typedef struct kit
+{
+    const ty_aggregate_recipe* recipe;
+    ty_workers* workers;
+    ty_grain grains[TY_GRAIN_MAX_VARIANTS];
+    int grain_count;
+    float volume; // m^3, of the mean grain
+    ty_container* container;
+    ty_fill_top top;
+    ty_pile* pile;
+    ty_rng rng;
+    int lost, replaced;
+    bool rest;
+} kit;
+
+// --- bodies ---
+
+static ty_quat rotation_draw(const ty_fill_def* fill, float steepest, ty_rng* rng)
+{
+    ty_quat heading = ty_quat_axis_angle(ty_vec3_make(0.0f, 1.0f, 0.0f), ty_rng_range(rng, 0.0f, 2.0f * TY_PI));
+    float sine = ty_rng_range(rng, -1.0f, 1.0f) * ty_sin(steepest); // even over the sphere at a tilt of 90 degrees
+    ty_quat tilt = ty_quat_axis_angle(ty_vec3_make(0.0f, 0.0f, 1.0f), 0.5f * TY_PI - ty_acos(sine));
+    ty_quat roll = ty_quat_axis_angle(ty_vec3_make(1.0f, 0.0f, 0.0f), ty_rng_range(rng, -1.0f, 1.0f) * fill->roll);
+    return ty_quat_multiply(heading, ty_quat_multiply(tilt, roll));
+}
+
+static ty_body body_draw(kit* k, ty_vec3 position, float steepest)
+{
+    ty_body body = {.position = position, .rotation = rotation_draw(&k->recipe->fill, steepest, &k->rng)};
+    body.scale = 1.0f + ty_clamp(0.3f * k->recipe->element.variation * ty_grain_bell(&k->rng), -0.1f, 0.1f);
+    body.grain = ty_rng_u32(&k->rng) % (uint32_t)k->grain_count;
+    return body;
+}
+
+// --- checks ---
+
+static ty_status recipe_check(const ty_aggregate_recipe* r, ty_error* error)
+{
+    const ty_grain_def* e = &r->element;
+    if (!(e->width > 0.0f && e->length >= e->width && e->length <= 12.0f * e->width))
+        return ty_error_set(error, TY_BAD_INPUT, "element.length: %g mm; with a width of %g mm it lies in %g..%g",
+                            (double)e->length * 1e3, (double)e->width * 1e3, (double)e->width * 1e3,
+                            (double)e->width * 12e3);
+    if (!(e->thickness >= 0.5f * e->width && e->thickness <= e->width))
+        return ty_error_set(error, TY_BAD_INPUT, "element.thickness: %g mm; with a width of %g mm it lies in %g..%g",
+                            (double)e->thickness * 1e3, (double)e->width * 1e3, (double)e->width * 500.0,
+                            (double)e->width * 1e3);
+    if (e->variants < 1 || e->variants > TY_GRAIN_MAX_VARIANTS)
+        return ty_error_set(error, TY_BAD_INPUT, "element.variants: %d; it lies in 1..%d", e->variants,
+                            TY_GRAIN_MAX_VARIANTS);
+    if (r->fill.count < 1 || r->fill.count > 200000)
+        return ty_error_set(error, TY_BAD_INPUT, "fill.count: %d; it lies in 1..200000", r->fill.count);
+    if (!(r->fill.density >= 0.3f && r->fill.density <= 0.68f))
+        return ty_error_set(error, TY_BAD_INPUT, "fill.density: %g; grains pack to 0.3..0.68", (double)r->fill.density);
+    return TY_OK;
+}
+
+static ty_status container_check(const kit* k, ty_error* error)
+{
+    ty_bounds b = ty_container_interior(k->container);
+    ty_vec3 size = ty_sub(b.high, b.low);
+    float least = ty_min(size.x, ty_min(size.y, size.z)), most = ty_max(size.x, ty_max(size.y, size.z));
+    const ty_grain_def* e = &k->recipe->element;
+    if (least >= 1.5f * e->width && most >= 1.5f * e->length)
+        return TY_OK;
+    return ty_error_set(
+        error, TY_BAD_INPUT,
+        "container: its inside is %.3g x %.3g x %.3g mm; grains of %.3g x %.3g mm need at least %.3g by "
+        "%.3g mm",
+        (double)size.x * 1e3, (double)size.y * 1e3, (double)size.z * 1e3, (double)e->length * 1e3,
+        (double)e->width * 1e3, (double)e->length * 1.5e3, (double)e->width * 1.5e3);
+}
+
+// --- fill ---
+
+static ty_status grains_make(kit* k, ty_error* error)
+{
+    for (; k->grain_count < k->recipe->element.variants; k->grain_count++)
+    {
+        ty_grain* grain = &k->grains[k->grain_count];
+        ty_status status = ty_grain_init(&k->recipe->element, k->recipe->seed, k->grain_count, grain, error);
+        if (status != TY_OK)
+            return status;
+        k->volume += grain->volume / (float)k->recipe->element.variants;
+    }
+    return TY_OK;
+}
+
+// Lets grains fall onto the pile: in layers over its planned surface, so far apart that they do not touch.
+static void grains_drop(kit* k, int count)
+{
+    float length = 1.1f * k->recipe->element.length * (1.0f + 2.0f * k->recipe->element.variation);
+    ty_bounds interior = ty_container_interior(k->container);
+    ty_vec3 center = ty_mul(ty_add(interior.low, interior.high), 0.5f);
+    float radius = 0.72f * ty_min(k->top.radius_x, k->top.radius_z), above = 0.6f * length;
+    for (int i = 0; i < ty_pile_count(k->pile); i++) // over all that is there already
+    {
+        ty_vec3 p = ty_pile_bodies(k->pile)[i].position;
+        above = ty_max(above, p.y - ty_fill_top_height(&k->top, p) + 0.75f * length);
+    }
+    int across = (int)(2.0f * radius / length) + 1, cells = across * across;
+    for (int placed = 0, cell = 0; placed < count; cell++)
+    {
+        float jitter = 0.12f * length, x = ((float)(cell % across) - 0.5f * (float)(across - 1)) * length;
+        float z = ((float)(cell % cells / across) - 0.5f * (float)(across - 1)) * length;
+        x += ty_rng_range(&k->rng, -jitter, jitter);
+        z += ty_rng_range(&k->rng, -jitter, jitter);
+        float chance = ty_rng_float(&k->rng), layers = (float)(cell / cells);
+        if (x * x + z * z > radius * radius || chance > 0.5f) // half of the places, so that no lattice shows
+            continue;
+        ty_vec3 p = {center.x + x, 0.0f, center.z + z};
+        p.y = ty_fill_top_height(&k->top, p) + above + layers * 0.75f * length;
+        ty_body body = body_draw(k, p, ty_min(k->recipe->fill.tilt, FALLING_TILT));
+        ty_pile_add(k->pile, &body, 1);
+        placed++;
+    }
+}
+
+static ty_status pile_fill(kit* k, ty_error* error)
+{
+    const ty_fill_def* fill = &k->recipe->fill;
+    int count = fill->count;
+    if (ty_container_is_open(k->container))
+        count -= (int)((float)count * fill->sprinkle);
+    float inset = 0.25f * k->recipe->element.width;
+    double volume = (double)count * (double)k->volume / (double)fill->density, capacity;
+    ty_status status = ty_fill_plan(k->container, volume, fill->heap, inset, &k->top, &capacity, error);
+    if (status != TY_OK)
+        return ty_error_set(error, status, "fill.count: %d grains at a density of %g; the container holds at most %d",
+                            fill->count, (double)fill->density, (int)(capacity / volume * (double)count));
+    ty_vec3* points = TY_TRY_ALLOC(ty_vec3, count);
+    if (!points)
+        return ty_error_set(error, TY_NO_MEMORY, "no memory for %d grains", count);
+    status = ty_fill_seeds(k->container, &k->top, inset, volume, k->recipe->seed, count, points, error);
+    for (int i = 0; i < count && status == TY_OK; i++)
+    {
+        ty_body body = body_draw(k, points[i], fill->tilt);
+        ty_pile_add(k->pile, &body, 1);
+    }
+    ty_free(points);
+    if (status != TY_OK)
+        return status;
+    ty_pile_inflate(k->pile, &k->top, fill->sweeps, k->workers);
+    grains_drop(k, fill->count - count);
+    return TY_OK;
+}
+
+// --- adjust ---
+
+// Settles; drops new grains for those lost over the rim, and settles again.
+static ty_status pile_rest(kit* k, ty_error* error)
+{
+    for (int round = 0; round < ROUNDS; round++)
+    {
+        int lost;
+        ty_pile_end end = ty_pile_settle(k->pile, k->recipe->settle.max_seconds, k->workers, &lost);
+        k->lost += lost;
+        k->rest = end == TY_PILE_REST;
+        if (end == TY_PILE_CANCELED)
+            return ty_error_set(error, TY_INTERRUPTED, "interrupted while settling");
+        if (lost == 0)
+            return TY_OK;
+        grains_drop(k, lost);
+        k->replaced += lost;
+    }
+    return ty_error_set(error, TY_BAD_INPUT, "fill.count: %d grains do not stay in the container, %d are left",
+                        k->recipe->fill.count, ty_pile_count(k->pile));
+}
+
+// Takes out what floats in a vessel that one can drop new grains into.
+static void floating_replace(kit* k, bool* held)
+{
+    if (!ty_container_is_open(k->container))
+        return;
+    int count = ty_pile_count(k->pile);
+    for (int i = 0; i < count; i++)
+        held[i] = !held[i];
+    ty_pile_remove(k->pile, held);
+    k->replaced += count - ty_pile_count(k->pile);
+    grains_drop(k, count - ty_pile_count(k->pile));
+}
+
+// Polishes a copy; where a grain floats after that, the unpolished pile settles on with that grain replaced.
+static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
+{
+    int count = k->recipe->fill.count;
+    ty_body* kept = TY_ALLOC(ty_body, count);
+    bool* held = TY_ALLOC(bool, count);
+    ty_status status = TY_OK;
+    for (int round = 0; status == TY_OK; round++)
+    {
+        status = pile_rest(k, error);
+        if (status != TY_OK)
+            break;
+        memcpy(kept, ty_pile_bodies(k->pile), (size_t)count * sizeof *kept);
+        ty_pile_metrics moving;
+        ty_pile_measure(k->pile, &moving, NULL);
+        ty_pile_polish(k->pile, k->recipe->settle.polish, k->workers);
+        ty_pile_measure(k->pile, metrics, held);
+        metrics->speed_rms = moving.speed_rms;
+        metrics->speed_max = moving.speed_max;
+        ty_log(TY_LOG_DEBUG,
+               "aggregate: %d float after %d substeps, overlap %.2f %% before polishing and %.2f %% after",
+               metrics->floating, metrics->substeps, (double)moving.overlap_max * 100.0,
+               (double)metrics->overlap_max * 100.0);
+        if (metrics->floating == 0 || round == ROUNDS - 1)
+            break;
+        ty_pile_set_bodies(k->pile, kept);
+        floating_replace(k, held);
+    }
+    ty_free(kept);
+    ty_free(held);
+    return status;
+}
+
+// --- the result ---
+
+// Chance and drying in one number: mean about 0, within -1..1, less at the surface.
+static void attributes_write(const kit* k, ty_aggregate* out)
+{
+    float* moisture = ty_aggregate_add_attribute(out, "moisture");
+    float* tint = ty_aggregate_add_attribute(out, "tint");
+    float* depth = ty_aggregate_add_attribute(out, "depth");
+    ty_pile_depth(k->pile, depth);
+    const ty_wetness_def* wet = &k->recipe->moisture;
+    for (uint32_t i = 0; i < out->instance_count; i++)
+    {
+        ty_rng rng = ty_rng_make(k->recipe->seed, 0x6d6f6973, i);
+        float exposed = ty_exp(-depth[i] / k->recipe->element.length);
+        float m = 0.45f * wet->variation * ty_grain_bell(&rng) + wet->drying * (0.35f - exposed);
+        moisture[i] = ty_clamp(m, -1.0f, 1.0f);
+        tint[i] = ty_clamp(0.5f * ty_grain_bell(&rng), -1.0f, 1.0f);
+    }
+}
+
+static char* metrics_write(const kit* k, const ty_pile_metrics* m)
+{
+    return ty_string_format("{\"count\": %d, \"phi\": %.4f, \"contacts\": %.3f, \"floating\": %d, "
+                            "\"overlap_max_percent\": %.4f, \"overlap_mean_percent\": %.5f, \"speed_rms_mm_s\": %.4f, "
+                            "\"speed_max_mm_s\": %.4f, \"rest\": %s, \"substeps\": %d, \"lost\": %d, "
+                            "\"replaced\": %d, \"level_mm\": %.3f, \"crown_mm\": %.3f}",
+                            m->count, (double)m->phi, (double)m->contacts, m->floating, (double)m->overlap_max * 100.0,
+                            (double)m->overlap_mean * 100.0, (double)m->speed_rms * 1e3, (double)m->speed_max * 1e3,
+                            k->rest ? "true" : "false", m->substeps, k->lost, k->replaced, (double)k->top.level * 1e3,
+                            (double)k->top.crown * 1e3);
+}
+
+static ty_status result_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error)
+{
+    uint32_t count = (uint32_t)ty_pile_count(k->pile);
+    ty_aggregate* a = ty_aggregate_create(count, k->grain_count);
+    if (!a)
+        return ty_error_set(error, TY_NO_MEMORY, "no memory for %u grains", count);
+    for (int i = 0; i < k->grain_count; i++)
+    {
+        a->prototypes[i] = k->grains[i].mesh;
+        k->grains[i].mesh = NULL; // now the aggregate's
+    }
+    const ty_body* bodies = ty_pile_bodies(k->pile);
+    for (uint32_t i = 0; i < count; i++)
+    {
+        const ty_body* b = &bodies[i];
+        a->transforms[i] = ty_affine_from_trs(b->position, b->rotation, ty_vec3_make(b->scale, b->scale, b->scale));
+        a->prototype_index[i] = b->grain;
+        a->ids[i] = i;
+    }
+    attributes_write(k, a);
+    a->metrics = metrics_write(k, metrics);
+    *out = a;
+    return TY_OK;
+}
+
+static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
+{
+    double start = ty_time_now();
+    ty_status status = grains_make(k, error);
+    if (status == TY_OK)
+        status = ty_container_create(&k->recipe->container, k->workers, &k->container, error);
+    if (status == TY_OK)
+        status = container_check(k, error);
+    if (status != TY_OK)
+        return status;
+    ty_pile_def def = ty_pile_def_default();
+    def.friction = k->recipe->settle.friction;
+    def.rolling = k->recipe->settle.rolling;
+    def.rate = k->recipe->settle.rate;
+    def.grains = k->grains;
+    def.grain_count = k->grain_count;
+    def.container = k->container;
+    k->pile = ty_pile_create(&def);
+    double prepared = ty_time_now();
+    status = pile_fill(k, error);
+    double filled = ty_time_now();
+    ty_pile_metrics metrics = {0};
+    if (status == TY_OK)
+        status = pile_finish(k, &metrics, error);
+    if (status == TY_OK)
+        status = result_write(k, &metrics, out, error);
+    if (status != TY_OK)
+        return status;
+    ty_log(TY_LOG_INFO,
+           "aggregate: %d grains, prepared %.1f s, filled %.1f s, settled and polished %.1f s; %d lost, %d replaced",
+           metrics.count, prepared - start, filled - prepared, ty_time_now() - filled, k->lost, k->replaced);
+    ty_log(TY_LOG_INFO, "aggregate: phi %.3f, %.1f neighbours, %d float, overlap %.3f %% of the width at most",
+           (double)metrics.phi, (double)metrics.contacts, metrics.floating, (double)metrics.overlap_max * 100.0);
+    bool slippery = k->recipe->settle.friction < 0.05f; // such piles creep for long: they end by time
+    if ((!k->rest && !slippery) || metrics.floating > 0)
+        return ty_error_set(error, TY_NOT_AT_REST, "the pile is not at rest: %.3g mm/s, %d grains float",
+                            (double)metrics.speed_rms * 1e3, metrics.floating);
+    return TY_OK;
+}
+
+ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate** out, ty_error* error)
+{
+    *out = NULL;
+    const ty_aggregate_recipe* recipe = def;
+    ty_status status = recipe_check(recipe, error);
+    if (status != TY_OK)
+        return status;
+    kit* k = TY_ALLOC(kit, 1);
+    k->recipe = recipe;
+    k->workers = workers;
+    k->rng = ty_rng_make(recipe->seed, 0x626f6479, 0);
+    status = kit_make(k, out, error);
+    ty_pile_destroy(k->pile);
+    ty_container_destroy(k->container);
+    for (int i = 0; i < k->grain_count; i++)
+        ty_grain_term(&k->grains[i]);
+    ty_free(k);
+    return status;
+}

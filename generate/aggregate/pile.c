@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// The bodies of a pile: added, removed, and carried into the balls and inertias that contacts are made of.
+#include "pile_state.h"
+#include <string.h>
+
+ty_pile_def ty_pile_def_default(void)
+{
+    return (ty_pile_def){.gravity = {0.0f, -9.81f, 0.0f}, .friction = 0.5f, .rolling = 0.001f, .rate = 2500.0f};
+}
+
+ty_pile* ty_pile_create(const ty_pile_def* def)
+{
+    TY_ASSERT(def->grain_count > 0 && def->rate > 0.0f);
+    ty_pile* pile = TY_ALLOC(ty_pile, 1);
+    pile->def = *def;
+    pile->growth = 1.0f;
+    pile->margin = PILE_MARGIN;
+    pile->stale = true;
+    for (int i = 0; i < def->grain_count; i++)
+    {
+        pile->mean_volume += def->grains[i].volume / (float)def->grain_count;
+        pile->mean_width += def->grains[i].width / (float)def->grain_count;
+    }
+    return pile;
+}
+
+void ty_pile_destroy(ty_pile* pile)
+{
+    if (!pile)
+        return;
+    void* arrays[] = {pile->bodies,  pile->poses,     pile->motions,     pile->balls,    pile->pairs,
+                      pile->touches, pile->old_pairs, pile->old_touches, pile->contacts, pile->order};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+        ty_free(arrays[i]);
+    ty_free(pile);
+}
+
+int ty_pile_count(const ty_pile* pile)
+{
+    return pile->count;
+}
+
+const ty_body* ty_pile_bodies(const ty_pile* pile)
+{
+    return pile->bodies;
+}
+
+void pile_reserve(void** array, int* capacity, int needed, size_t size)
+{
+    if (needed <= *capacity)
+        return;
+    int grown = needed + needed / 2 + 64;
+    *array = ty_grow(*array, (size_t)*capacity, (size_t)grown, size);
+    *capacity = grown;
+}
+
+static void bodies_reserve(ty_pile* pile, int needed)
+{
+    if (needed <= pile->capacity)
+        return;
+    size_t old = (size_t)pile->capacity, grown = (size_t)needed + (size_t)needed / 4 + 16;
+    pile->bodies = ty_grow(pile->bodies, old, grown, sizeof *pile->bodies);
+    pile->poses = ty_grow(pile->poses, old, grown, sizeof *pile->poses);
+    pile->motions = ty_grow(pile->motions, old, grown, sizeof *pile->motions);
+    pile->balls = ty_grow(pile->balls, old * TY_GRAIN_BALLS, grown * TY_GRAIN_BALLS, sizeof *pile->balls);
+    pile->capacity = (int)grown;
+}
+
+static void body_enter(ty_pile* pile, int i)
+{
+    const ty_body* body = &pile->bodies[i];
+    TY_ASSERT(body->grain < (uint32_t)pile->def.grain_count);
+    pile->poses[i] = (pose){.seen = body->position, .seen_rotation = body->rotation};
+    pile->motions[i] = (motion){.v = body->velocity, .w = body->spin};
+    pile->max_radius = ty_max(pile->max_radius, pile->def.grains[body->grain].radius * body->scale);
+    pile_refresh(pile, i);
+    pile->stale = true;
+}
+
+void ty_pile_add(ty_pile* pile, const ty_body* bodies, int count)
+{
+    bodies_reserve(pile, pile->count + count);
+    for (int i = 0; i < count; i++)
+    {
+        pile->bodies[pile->count] = bodies[i];
+        body_enter(pile, pile->count++);
+    }
+}
+
+void ty_pile_set_bodies(ty_pile* pile, const ty_body* bodies)
+{
+    for (int i = 0; i < pile->count; i++)
+    {
+        pile->bodies[i] = bodies[i];
+        body_enter(pile, i);
+    }
+}
+
+// Drops the pairs of removed bodies and renames the others; ascending order is kept, so impulses still find their pair.
+static void pairs_rename(ty_pile* pile, const int* renamed)
+{
+    int kept = 0, walls = 0;
+    for (int i = 0; i < pile->pair_count; i++)
+    {
+        pair p = pile->pairs[i];
+        if (renamed[p.a] < 0 || (p.b >= 0 && renamed[p.b] < 0))
+            continue;
+        p.a = renamed[p.a];
+        p.b = p.b >= 0 ? renamed[p.b] : p.b;
+        walls += p.b < 0;
+        pile->pairs[kept++] = p;
+    }
+    pile->pair_count = kept;
+    pile->wall_first = kept - walls;
+    pile->stale = true;
+}
+
+void ty_pile_remove(ty_pile* pile, const bool* gone)
+{
+    int* renamed = TY_ALLOC(int, pile->count);
+    int kept = 0;
+    for (int i = 0; i < pile->count; i++)
+    {
+        renamed[i] = gone[i] ? -1 : kept;
+        if (gone[i])
+            continue;
+        pile->bodies[kept] = pile->bodies[i];
+        pile->poses[kept] = pile->poses[i];
+        pile->motions[kept] = pile->motions[i];
+        memmove(pile_balls(pile, kept), pile_balls(pile, i), sizeof(ty_ball) * TY_GRAIN_BALLS);
+        kept++;
+    }
+    pile->count = kept;
+    pairs_rename(pile, renamed);
+    ty_free(renamed);
+}
+
+void pile_turn(ty_body* body, ty_vec3 r)
+{
+    ty_quat q = body->rotation, half = {0.5f * r.x, 0.5f * r.y, 0.5f * r.z, 1.0f};
+    body->rotation = ty_quat_normalize(ty_quat_multiply(half, q));
+}
+
+// R J R^T for the rotation r.
+static void inertia_to_world(const float body[6], const ty_affine* r, float factor, float out[6])
+{
+    ty_vec3 x = {r->x.x, r->y.x, r->z.x}, y = {r->x.y, r->y.y, r->z.y}, z = {r->x.z, r->y.z, r->z.z}; // rows
+    ty_vec3 jx = symmetric_times(body, x), jy = symmetric_times(body, y), jz = symmetric_times(body, z);
+    out[0] = factor * ty_dot(x, jx), out[1] = factor * ty_dot(y, jy), out[2] = factor * ty_dot(z, jz);
+    out[3] = factor * ty_dot(x, jy), out[4] = factor * ty_dot(x, jz), out[5] = factor * ty_dot(y, jz);
+}
+
+void pile_refresh(ty_pile* pile, int i)
+{
+    const ty_body* body = &pile->bodies[i];
+    const ty_grain* grain = &pile->def.grains[body->grain];
+    ty_affine turned = ty_affine_from_trs(body->position, body->rotation, ty_vec3_make(1.0f, 1.0f, 1.0f));
+    float size = body->scale * pile->growth;
+    pose* at = &pile->poses[i];
+    at->frame = turned;
+    at->frame.x = ty_mul(turned.x, size);
+    at->frame.y = ty_mul(turned.y, size);
+    at->frame.z = ty_mul(turned.z, size);
+    ty_ball* balls = pile_balls(pile, i);
+    for (int k = 0; k < TY_GRAIN_BALLS; k++)
+        balls[k] = (ty_ball){ty_map_point(&at->frame, grain->balls[k].center), grain->balls[k].radius * size};
+    motion* m = &pile->motions[i];
+    m->inverse_mass = pile->mean_volume / (grain->volume * body->scale * body->scale * body->scale);
+    inertia_to_world(grain->inverse_inertia, &turned, m->inverse_mass / (size * size), m->inverse_inertia);
+}
+
+float ty_fill_top_height(const ty_fill_top* top, ty_vec3 p)
+{
+    float x = ty_sqr(p.x / top->radius_x), z = ty_sqr(p.z / top->radius_z);
+    float share = top->turned ? 1.0f - x - z : ty_max(0.0f, 1.0f - x) * ty_max(0.0f, 1.0f - z);
+    return top->level + top->crown * ty_max(0.0f, share);
+}
+
+// The lid's distance to first order, from the height and its slope.
+static float lid_wall(const ty_fill_top* top, ty_vec3 p, ty_vec3* normal)
+{
+    const float d = 1e-4f;
+    float y = ty_fill_top_height(top, p);
+    float sx = (ty_fill_top_height(top, ty_vec3_make(p.x + d, p.y, p.z)) - y) / d;
+    float sz = (ty_fill_top_height(top, ty_vec3_make(p.x, p.y, p.z + d)) - y) / d;
+    ty_vec3 n = {sx, -1.0f, sz};
+    float length = ty_length(n);
+    *normal = ty_mul(n, 1.0f / length);
+    return (y - p.y) / length;
+}
+
+float pile_wall(const ty_pile* pile, int wall, ty_vec3 p, ty_vec3* normal)
+{
+    return wall == PILE_LID ? lid_wall(pile->lid, p, normal) : ty_container_wall(pile->def.container, wall, p, normal);
+}
+
+ty_vec3 ty_pile_momentum(const ty_pile* pile)
+{
+    ty_vec3 sum = {0.0f, 0.0f, 0.0f};
+    for (int i = 0; i < pile->count; i++)
+        sum = ty_mad(sum, pile->motions[i].v, 1.0f / pile->motions[i].inverse_mass);
+    return sum;
+}

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inside of a pile: bodies, candidate contacts with the impulses they keep, colours, contacts of the substep.
+#pragma once
+#include <tsuya/generate/pile.h>
+
+enum
+{
+    PILE_COLORS = 48, // the last one takes what finds no other and is worked off in order by one thread
+    PILE_WALL = -1,
+    PILE_LID = 31, // wall number of the lid during a fill
+};
+
+#define PILE_MARGIN 0.3e-3f // m, candidates reach this far; new ones when a ball moved .45 of it
+
+// What the solver needs of a body, one cache line.
+typedef struct motion
+{
+    ty_vec3 v, w;
+    float inverse_mass;
+    float inverse_inertia[6]; // world, with the mass: xx yy zz xy xz yz
+    float load;               // sum of normal impulses in the relax sweep
+    uint16_t quiet;           // substeps below the sleeping speed
+    bool asleep;              // stands still with infinite mass until something hits it
+    bool woken;
+} motion;
+
+// A candidate: ball of the pair's first body against a ball of the second, or against a wall.
+typedef struct touch
+{
+    uint8_t a, b;
+    float normal_impulse; // kept across substeps
+    ty_vec3 tangent_impulse;
+} touch;
+
+typedef struct pair
+{
+    int a, b; // bodies, a < b; b = PILE_WALL
+    int first, count;
+    int slot;   // of its contacts
+    int active; // contacts in this substep
+} pair;
+
+typedef struct contact
+{
+    ty_vec3 normal; // towards body a
+    ty_vec3 arm_a, arm_b;
+    float gap;
+    float normal_weight; // sum of inverse effective masses along the normal
+    float tangent_mass;  // 1 / largest eigenvalue of the tangential one
+    float normal_impulse;
+    ty_vec3 tangent_impulse;
+    int touch;
+} contact;
+
+typedef struct pose
+{
+    ty_affine frame; // body to world, with the size
+    ty_vec3 seen;    // position and rotation when candidates were last found
+    ty_quat seen_rotation;
+} pose;
+
+struct ty_pile
+{
+    ty_pile_def def;
+    float mean_volume, mean_width, max_radius;
+    float growth;           // common size factor, below 1 during a fill
+    const ty_fill_top* lid; // during a fill
+    ty_body* bodies;
+    pose* poses;
+    motion* motions;
+    ty_ball* balls; // [capacity][TY_GRAIN_BALLS], world
+    int count, capacity;
+    pair* pairs; // ascending (a, b); walls after all others
+    int pair_count, pair_capacity, wall_first;
+    touch* touches;
+    int touch_count, touch_capacity;
+    pair* old_pairs;
+    int old_pair_count, old_pair_capacity, old_wall_first;
+    touch* old_touches;
+    int old_touch_capacity;
+    contact* contacts;
+    int contact_capacity;
+    int* order; // pairs by colour; the walls are the colour after the last
+    int order_capacity;
+    int color_first[PILE_COLORS + 2];
+    int color_count;
+    float margin;
+    bool stale;     // candidates must be found again
+    bool may_sleep; // bodies at rest are left out while a few still move
+    float time;     // s since the start
+    int substeps;
+};
+
+static inline ty_vec3 symmetric_times(const float s[6], ty_vec3 v)
+{
+    return (ty_vec3){s[0] * v.x + s[3] * v.y + s[4] * v.z, s[3] * v.x + s[1] * v.y + s[5] * v.z,
+                     s[4] * v.x + s[5] * v.y + s[2] * v.z};
+}
+
+static inline ty_ball* pile_balls(const ty_pile* pile, int body)
+{
+    return pile->balls + (size_t)body * TY_GRAIN_BALLS;
+}
+
+// pile.c
+void pile_refresh(ty_pile* pile, int body); // frame, balls and inertia from position and rotation
+void pile_turn(ty_body* body, ty_vec3 rotation_vector);
+float pile_wall(const ty_pile* pile, int wall, ty_vec3 p, ty_vec3* normal);
+void pile_reserve(void** array, int* capacity, int needed, size_t size);
+
+// contact.c
+void pile_detect(ty_pile* pile, float margin); // candidates within margin, in id order, kept impulses, colours
+bool pile_moved(const ty_pile* pile);          // a ball may have moved more than .45 of the margin
+
+// Runs fn over the pairs of each colour in turn, then over the walls. Pairs of one colour share no body.
+typedef void pile_pair_fn(ty_pile* pile, pair* p);
+void pile_sweep(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn);
+// The same without order, for what writes to the pair alone.
+void pile_each(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn);
+
+// polish.c
+void pile_project(ty_pile* pile, ty_workers* workers); // one sweep of position corrections
+void pile_refresh_all(ty_pile* pile);
+
+// metrics.c
+void pile_speeds(const ty_pile* pile, float* rms, float* largest); // of the balls, m/s

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parameter tables of an aggregate's recipe and their defaults.
+#include <tsuya/generate/aggregate_recipe.h>
+
+ty_aggregate_recipe ty_aggregate_recipe_default(void)
+{
+    ty_pile_def pile = ty_pile_def_default();
+    return (ty_aggregate_recipe){
+        .element = ty_grain_def_default(),
+        .container = ty_container_def_default(),
+        .fill = {.count = 2000,
+                 .density = 0.60f,
+                 .heap = 12e-3f,
+                 .tilt = TY_PI / 3.0f,
+                 .roll = TY_PI,
+                 .sprinkle = 0.06f,
+                 .sweeps = 400},
+        .settle = {pile.friction, pile.rolling, 3.0f, pile.rate, 200},
+        .moisture = {.variation = 0.8f, .drying = 0.4f},
+        .seed = {7},
+    };
+}
+
+#define FIELD(name, type, unit, low, high, member, help)                                                               \
+    {                                                                                                                  \
+        name, type, unit, low, high, NULL, NULL, offsetof(OWNER, member), help, false                                  \
+    }
+
+// --- element ---
+
+static const char* const grain_kinds[] = {"rice", NULL};
+
+static void grain_set_default(void* def)
+{
+    *(ty_grain_def*)def = ty_grain_def_default();
+}
+
+#define OWNER ty_grain_def
+static const ty_param grain_rows[] = {
+    {"kind", TY_PARAM_ENUM, "", 0, 0, grain_kinds, NULL, offsetof(OWNER, kind), "what one element is", false},
+    FIELD("length", TY_PARAM_FLOAT, "mm", 0.2, 100, length, "mean length"),
+    FIELD("width", TY_PARAM_FLOAT, "mm", 0.1, 100, width, "mean width, at most the length"),
+    FIELD("thickness", TY_PARAM_FLOAT, "mm", 0.05, 100, thickness, "mean thickness, from half the width to the width"),
+    FIELD("variation", TY_PARAM_FLOAT, "", 0, 0.2, variation, "standard deviation of the sizes, relative"),
+    FIELD("variants", TY_PARAM_INT, "", 1, TY_GRAIN_MAX_VARIANTS, variants, "how many different meshes are made"),
+    FIELD("notch", TY_PARAM_FLOAT, "", 0, 0.3, notch, "depth of the germ's dent, of the width"),
+    FIELD("divisions", TY_PARAM_INT, "", 4, 64, divisions, "cells across the width of a mesh"),
+};
+#undef OWNER
+
+static const ty_param_table grain_table = {"aggregate.element",  "The grain that an aggregate is made of.",
+                                           sizeof(ty_grain_def), grain_set_default,
+                                           grain_rows,           TY_PARAM_COUNT(grain_rows)};
+
+const ty_param_table* ty_grain_params(void)
+{
+    return &grain_table;
+}
+
+// --- container ---
+
+static const char* const container_kinds[] = {"bowl", "box", "sphere", "dome", "mesh", NULL};
+
+static void container_set_default(void* def)
+{
+    *(ty_container_def*)def = ty_container_def_default();
+}
+
+#define OWNER ty_container_def
+static const ty_param container_rows[] = {
+    {"shape", TY_PARAM_ENUM, "", 0, 0, container_kinds, NULL, offsetof(OWNER, kind),
+     "bowl and box are open at the top; sphere, dome and mesh are closed", false},
+    FIELD("mesh", TY_PARAM_PATH, "", 0, 0, mesh, "a closed mesh, with shape mesh"),
+    FIELD("radius", TY_PARAM_FLOAT, "m", 0, 1e4, shape.radius, "of bowl (rim, outside), sphere, dome"),
+    FIELD("size", TY_PARAM_FLOAT3, "m", 0, 1e4, shape.size, "half extents of the box"),
+    FIELD("height", TY_PARAM_FLOAT, "m", 0, 1e4, shape.height, "of bowl and dome"),
+    FIELD("thickness", TY_PARAM_FLOAT, "m", 0, 1e4, shape.thickness, "wall of the bowl"),
+    FIELD("foot_radius", TY_PARAM_FLOAT, "m", 0, 1e4, shape.foot_radius, "of the bowl's foot ring"),
+    FIELD("foot_height", TY_PARAM_FLOAT, "m", 0, 1e4, shape.foot_height, "of the bowl's foot ring"),
+    FIELD("curve", TY_PARAM_FLOAT, "", 1, 12, shape.curve,
+          "profile of the bowl: 1 = cone, 2 = parabola, more = fuller"),
+    FIELD("rounding", TY_PARAM_FLOAT, "m", 0, 1e4, shape.rounding, "radius of edges"),
+    FIELD("divisions", TY_PARAM_INT, "", 8, 4096, shape.divisions, "cells around"),
+};
+#undef OWNER
+
+static const ty_param_table container_table = {"aggregate.container",
+                                               "What the grains lie in. The fields of bowl, box, sphere and dome are "
+                                               "those of the shapes of a scene: give both the "
+                                               "same numbers.",
+                                               sizeof(ty_container_def),
+                                               container_set_default,
+                                               container_rows,
+                                               TY_PARAM_COUNT(container_rows)};
+
+const ty_param_table* ty_container_params(void)
+{
+    return &container_table;
+}
+
+// --- fill, settle, moisture ---
+
+static void fill_set_default(void* def)
+{
+    *(ty_fill_def*)def = ty_aggregate_recipe_default().fill;
+}
+
+#define OWNER ty_fill_def
+static const ty_param fill_rows[] = {
+    FIELD("count", TY_PARAM_INT, "", 1, 200000, count, "grains in the result"),
+    FIELD("density", TY_PARAM_FLOAT, "", 0.3, 0.68, density, "volume share of the grains before they settle"),
+    FIELD("heap", TY_PARAM_FLOAT, "mm", 0, 1000, heap, "height of the crown; rises further when the vessel is full"),
+    FIELD("tilt", TY_PARAM_FLOAT, "deg", 0, 90, tilt, "largest angle of a grain with the horizontal, as filled"),
+    FIELD("roll", TY_PARAM_FLOAT, "deg", 0, 180, roll, "largest turn about its own length, as filled"),
+    FIELD("sprinkle", TY_PARAM_FLOAT, "", 0, 0.5, sprinkle,
+          "share of the grains that fall onto an open pile from above"),
+    FIELD("sweeps", TY_PARAM_INT, "", 50, 5000, sweeps, "of the inflation"),
+};
+#undef OWNER
+
+static const ty_param_table fill_table = {"aggregate.fill",    "How many grains, how dense, how high.",
+                                          sizeof(ty_fill_def), fill_set_default,
+                                          fill_rows,           TY_PARAM_COUNT(fill_rows)};
+
+static void settle_set_default(void* def)
+{
+    *(ty_settle_def*)def = ty_aggregate_recipe_default().settle;
+}
+
+#define OWNER ty_settle_def
+static const ty_param settle_rows[] = {
+    FIELD("friction", TY_PARAM_FLOAT, "", 0, 2, friction, "Coulomb coefficient, between grains and at walls"),
+    FIELD("rolling", TY_PARAM_FLOAT, "", 0, 0.1, rolling, "rolling resistance, of half the width"),
+    FIELD("max_seconds", TY_PARAM_FLOAT, "s", 0.1, 60, max_seconds, "simulated time after which a pile is not at rest"),
+    FIELD("rate", TY_PARAM_FLOAT, "1/s", 1000, 20000, rate, "substeps per second; deep piles want more"),
+    FIELD("polish", TY_PARAM_INT, "", 0, 5000, polish, "sweeps that take out what overlap is left"),
+};
+#undef OWNER
+
+static const ty_param_table settle_table = {"aggregate.settle",    "How the grains come to rest.",
+                                            sizeof(ty_settle_def), settle_set_default,
+                                            settle_rows,           TY_PARAM_COUNT(settle_rows)};
+
+static void wetness_set_default(void* def)
+{
+    *(ty_wetness_def*)def = ty_aggregate_recipe_default().moisture;
+}
+
+#define OWNER ty_wetness_def
+static const ty_param wetness_rows[] = {
+    FIELD("variation", TY_PARAM_FLOAT, "", 0, 1, variation, "share of chance in the attribute moisture (-1..1)"),
+    FIELD("drying", TY_PARAM_FLOAT, "", 0, 1, drying, "how much drier the grains at the surface are"),
+};
+#undef OWNER
+
+static const ty_param_table wetness_table = {"aggregate.moisture",   "The attribute moisture of the grains.",
+                                             sizeof(ty_wetness_def), wetness_set_default,
+                                             wetness_rows,           TY_PARAM_COUNT(wetness_rows)};
+
+// --- the whole ---
+
+static void recipe_set_default(void* def)
+{
+    *(ty_aggregate_recipe*)def = ty_aggregate_recipe_default();
+}
+
+#define OWNER ty_aggregate_recipe
+#define GROUP(member, table, help)                                                                                     \
+    {                                                                                                                  \
+#member, TY_PARAM_GROUP, "", 0, 0, NULL, table, offsetof(OWNER, member), help, false                           \
+    }
+static const ty_param recipe_rows[] = {
+    GROUP(element, &grain_table, "the grain"),
+    GROUP(container, &container_table, "what the grains lie in"),
+    GROUP(fill, &fill_table, "how many, how dense, how high"),
+    GROUP(settle, &settle_table, "how they come to rest"),
+    GROUP(moisture, &wetness_table, "the attribute moisture"),
+    FIELD("seed", TY_PARAM_SEED, "", 0, 0, seed, "one seed, one result"),
+};
+#undef GROUP
+#undef OWNER
+
+static const ty_param_table recipe_table = {"aggregate",
+                                            "Grains that lie in a vessel, at rest.",
+                                            sizeof(ty_aggregate_recipe),
+                                            recipe_set_default,
+                                            recipe_rows,
+                                            TY_PARAM_COUNT(recipe_rows)};
+
+const ty_param_table* ty_aggregate_recipe_params(void)
+{
+    return &recipe_table;
+}
+
+const ty_generator ty_aggregate_generator = {"aggregate", "aggregate 1", &recipe_table, ty_aggregate_make};

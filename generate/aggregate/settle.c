@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: Apache-2.0
+// The settling of a pile: sequential impulses whose normal and tangential parts are kept across substeps, and a relax
+// sweep. Without that memory friction acts viscously and a pile never rests. Soft contacts after Catto 2011 and 2023.
+#include "pile_state.h"
+
+enum
+{
+    QUIET_CHECKS = 3,
+};
+
+#define GRAVITY_RAMP 0.05f  // s
+#define DAMPING_RATIO 10.0f // of a contact
+#define PUSH_OUT 0.1f       // m/s, largest speed at which an overlap is undone
+#define TIGHT 0.03e-3f      // m, gaps up to here are contacts of the substep
+#define CHECK_TIME 0.02f    // s
+#define QUIET_RMS 0.3e-3f   // m/s
+#define QUIET_MAX 1.7e-3f   // m/s
+#define QUIET_AFTER 0.09f   // s
+#define SLEEP_SPEED 0.5e-3f // m/s
+#define SLEEP_TIME 0.024f   // s, below that speed
+#define SLEEP_AFTER 0.12f   // s since the bodies were last set free
+#define WAKE_SPEED 5e-3f    // m/s, of a hit
+
+// --- contacts of the substep ---
+
+static float along(const motion* m, ty_vec3 arm, ty_vec3 direction)
+{
+    ty_vec3 u = ty_cross(arm, direction);
+    return m->inverse_mass + ty_dot(u, symmetric_times(m->inverse_inertia, u));
+}
+
+static float across(const motion* m, ty_vec3 arm, ty_vec3 s, ty_vec3 t)
+{
+    return ty_dot(ty_cross(arm, s), symmetric_times(m->inverse_inertia, ty_cross(arm, t)));
+}
+
+// Inverse effective mass along the normal, and the mass below that of any tangential direction.
+static void contact_masses(contact* c, const motion* a, const motion* b)
+{
+    ty_frame f = ty_frame_from_normal(c->normal);
+    float ss = along(a, c->arm_a, f.t), tt = along(a, c->arm_a, f.b), st = across(a, c->arm_a, f.t, f.b);
+    c->normal_weight = along(a, c->arm_a, c->normal);
+    if (b)
+    {
+        ss += along(b, c->arm_b, f.t), tt += along(b, c->arm_b, f.b), st += across(b, c->arm_b, f.t, f.b);
+        c->normal_weight += along(b, c->arm_b, c->normal);
+    }
+    float half = 0.5f * (ss - tt);
+    c->tangent_mass = 1.0f / (0.5f * (ss + tt) + sqrtf(half * half + st * st));
+}
+
+// Gap, normal and arms of a touch; false when it is too far to act.
+static bool contact_place(const ty_pile* pile, const pair* p, const touch* t, contact* c)
+{
+    const ty_ball* ball = &pile_balls(pile, p->a)[t->a];
+    ty_vec3 from = ball->center;
+    if (p->b >= 0)
+    {
+        const ty_ball* other = &pile_balls(pile, p->b)[t->b];
+        ty_vec3 d = ty_sub(from, other->center);
+        float reach = ball->radius + other->radius, square = ty_length_sqr(d);
+        if (square > ty_sqr(reach + TIGHT))
+            return false;
+        float length = sqrtf(square);
+        c->gap = length - reach;
+        c->normal = length > 1e-9f ? ty_mul(d, 1.0f / length) : ty_vec3_make(0.0f, 1.0f, 0.0f);
+        c->arm_b = ty_sub(ty_mad(other->center, c->normal, other->radius), pile->bodies[p->b].position);
+    }
+    else
+    {
+        c->gap = pile_wall(pile, t->b, from, &c->normal) - ball->radius;
+        if (c->gap > TIGHT)
+            return false;
+        c->arm_b = ty_vec3_make(0.0f, 0.0f, 0.0f);
+    }
+    c->arm_a = ty_sub(ty_mad(from, c->normal, -ball->radius), pile->bodies[p->a].position);
+    return true;
+}
+
+static bool is_still(const ty_pile* pile, int body)
+{
+    return body < 0 || pile->motions[body].asleep;
+}
+
+static void pair_prepare(ty_pile* pile, pair* p)
+{
+    p->active = 0;
+    if (is_still(pile, p->a) && is_still(pile, p->b))
+        return; // the impulses stay for when one of them wakes
+    for (int i = p->first; i < p->first + p->count; i++)
+    {
+        touch* t = &pile->touches[i];
+        contact* c = &pile->contacts[p->slot + p->active];
+        if (!contact_place(pile, p, t, c))
+        {
+            t->normal_impulse = 0.0f;
+            t->tangent_impulse = ty_vec3_make(0.0f, 0.0f, 0.0f);
+            continue;
+        }
+        contact_masses(c, &pile->motions[p->a], p->b >= 0 ? &pile->motions[p->b] : NULL);
+        c->normal_impulse = t->normal_impulse;
+        c->tangent_impulse = ty_mad(t->tangent_impulse, c->normal, -ty_dot(t->tangent_impulse, c->normal));
+        c->touch = i;
+        p->active++;
+    }
+}
+
+// --- impulses ---
+
+static void kick(motion* m, ty_vec3 arm, ty_vec3 impulse, float sign)
+{
+    m->v = ty_mad(m->v, impulse, sign * m->inverse_mass);
+    m->w = ty_mad(m->w, symmetric_times(m->inverse_inertia, ty_cross(arm, impulse)), sign);
+}
+
+static void pair_kick(ty_pile* pile, const pair* p, const contact* c, ty_vec3 impulse)
+{
+    kick(&pile->motions[p->a], c->arm_a, impulse, 1.0f);
+    if (p->b >= 0)
+        kick(&pile->motions[p->b], c->arm_b, impulse, -1.0f);
+}
+
+static void pair_warm_start(ty_pile* pile, pair* p)
+{
+    for (int i = p->slot; i < p->slot + p->active; i++)
+    {
+        const contact* c = &pile->contacts[i];
+        pair_kick(pile, p, c, ty_mad(c->tangent_impulse, c->normal, c->normal_impulse));
+    }
+}
+
+static ty_vec3 relative_velocity(const ty_pile* pile, const pair* p, const contact* c)
+{
+    const motion* a = &pile->motions[p->a];
+    ty_vec3 u = ty_add(a->v, ty_cross(a->w, c->arm_a));
+    if (p->b < 0)
+        return u;
+    const motion* b = &pile->motions[p->b];
+    return ty_sub(u, ty_add(b->v, ty_cross(b->w, c->arm_b)));
+}
+
+// One contact of a Gauss-Seidel sweep: bias is a velocity to be undone, softness an inverse mass.
+static void contact_solve(ty_pile* pile, const pair* p, contact* c, float bias, float softness)
+{
+    ty_vec3 u = relative_velocity(pile, p, c);
+    float along_normal = ty_dot(u, c->normal);
+    float step = (along_normal + bias + softness * c->normal_impulse) / (c->normal_weight + softness);
+    float normal = ty_max(0.0f, c->normal_impulse - step), limit = pile->def.friction * normal;
+    ty_vec3 slip = ty_mad(u, c->normal, -along_normal);
+    ty_vec3 tangent = ty_mad(c->tangent_impulse, slip, -c->tangent_mass);
+    float square = ty_length_sqr(tangent);
+    if (square > limit * limit)
+        tangent = ty_mul(tangent, limit / sqrtf(square));
+    ty_vec3 change = ty_mul(c->normal, normal - c->normal_impulse);
+    change = ty_add(change, ty_sub(tangent, c->tangent_impulse));
+    c->normal_impulse = normal;
+    c->tangent_impulse = tangent;
+    pair_kick(pile, p, c, change);
+}
+
+// A sleeper wakes when it is hit.
+static void sleepers_wake(ty_pile* pile, const pair* p, const contact* c)
+{
+    motion *a = &pile->motions[p->a], *b = p->b >= 0 ? &pile->motions[p->b] : NULL;
+    bool sleeper = a->asleep || (b && b->asleep);
+    if (!sleeper || ty_dot(relative_velocity(pile, p, c), c->normal) > -WAKE_SPEED)
+        return;
+    a->woken = a->asleep;
+    if (b)
+        b->woken = b->asleep;
+}
+
+// A contact is a damped spring per unit mass, k = omega^2 / 2 and c = zeta omega at a quarter of the substep rate:
+// softness gamma = 1 / (h (c + h k)), bias rate b = k / (c + h k).
+static void pair_solve(ty_pile* pile, pair* p)
+{
+    float h = 1.0f / pile->def.rate, omega = 0.5f * TY_PI * pile->def.rate;
+    float k = 0.5f * omega * omega, damping = DAMPING_RATIO * omega;
+    float softness = 1.0f / (h * (damping + h * k)), rate = k / (damping + h * k);
+    for (int i = p->slot; i < p->slot + p->active; i++)
+    {
+        contact* c = &pile->contacts[i];
+        sleepers_wake(pile, p, c);
+        if (c->gap > 0.0f)
+            contact_solve(pile, p, c, c->gap / h, 0.0f);
+        else
+            contact_solve(pile, p, c, ty_max(rate * c->gap, -PUSH_OUT), softness);
+    }
+}
+
+static void pair_relax(ty_pile* pile, pair* p)
+{
+    for (int i = p->slot; i < p->slot + p->active; i++)
+    {
+        contact* c = &pile->contacts[i];
+        contact_solve(pile, p, c, c->gap > 0.0f ? c->gap * pile->def.rate : 0.0f, 0.0f);
+        pile->touches[c->touch].normal_impulse = c->normal_impulse;
+        pile->touches[c->touch].tangent_impulse = c->tangent_impulse;
+        pile->motions[p->a].load += c->normal_impulse;
+        if (p->b >= 0)
+            pile->motions[p->b].load += c->normal_impulse;
+    }
+}
+
+// --- the substep ---
+
+static void bodies_accelerate(void* context, int64_t begin, int64_t end, int worker)
+{
+    (void)worker;
+    ty_pile* pile = context;
+    ty_vec3 step = ty_mul(pile->def.gravity, ty_min(1.0f, pile->time / GRAVITY_RAMP) / pile->def.rate);
+    for (int64_t i = begin; i < end; i++)
+    {
+        motion* m = &pile->motions[i];
+        m->load = 0.0f;
+        if (!m->asleep)
+            m->v = ty_add(m->v, step);
+    }
+}
+
+static void bodies_advance(void* context, int64_t begin, int64_t end, int worker)
+{
+    (void)worker;
+    ty_pile* pile = context;
+    float h = 1.0f / pile->def.rate;
+    for (int64_t i = begin; i < end; i++)
+    {
+        ty_body* b = &pile->bodies[i];
+        if (pile->motions[i].asleep)
+            continue;
+        b->position = ty_mad(b->position, pile->motions[i].v, h);
+        pile_turn(b, ty_mul(pile->motions[i].w, h));
+        pile_refresh(pile, (int)i);
+    }
+}
+
+// Rolling resistance: the load times a small arm, taken from the spin, never reversing it.
+static void body_roll(const ty_pile* pile, motion* m)
+{
+    const float* s = m->inverse_inertia;
+    float lightest = ty_max(s[0], ty_max(s[1], s[2])), w = ty_length(m->w);
+    float loss = pile->def.rolling * 0.5f * pile->mean_width * m->load * lightest;
+    m->w = ty_mul(m->w, w > loss ? 1.0f - loss / w : 0.0f);
+}
+
+static void body_wake(ty_pile* pile, int i)
+{
+    motion* m = &pile->motions[i];
+    m->asleep = m->woken = false;
+    m->quiet = 0;
+    pile_refresh(pile, i); // brings its mass back
+}
+
+static void body_sleep(motion* m)
+{
+    *m = (motion){.asleep = true};
+}
+
+static void bodies_roll(void* context, int64_t begin, int64_t end, int worker)
+{
+    (void)worker;
+    ty_pile* pile = context;
+    for (int64_t i = begin; i < end; i++)
+    {
+        motion* m = &pile->motions[i];
+        if (m->woken)
+            body_wake(pile, (int)i);
+        if (m->asleep)
+            continue;
+        body_roll(pile, m);
+        float speed = ty_length(m->v) + ty_length(m->w) * 0.5f * pile->mean_width;
+        m->quiet = speed < SLEEP_SPEED && pile->may_sleep ? (uint16_t)(m->quiet + 1) : 0;
+        if ((float)m->quiet > SLEEP_TIME * pile->def.rate)
+            body_sleep(m);
+        pile->bodies[i].velocity = m->v;
+        pile->bodies[i].spin = m->w;
+    }
+}
+
+static void for_bodies(ty_pile* pile, ty_workers* workers, ty_range_fn* fn)
+{
+    enum
+    {
+        WORTH_SHARING = 1024,
+        PIECE = 256,
+    };
+    bool share = pile->count >= WORTH_SHARING;
+    ty_parallel_for(share ? workers : NULL, pile->count, share ? PIECE : pile->count + 1, fn, pile);
+}
+
+void ty_pile_step(ty_pile* pile, ty_workers* workers)
+{
+    if (pile_moved(pile))
+        pile_detect(pile, PILE_MARGIN);
+    for_bodies(pile, workers, bodies_accelerate);
+    pile_each(pile, workers, pair_prepare);
+    pile_sweep(pile, workers, pair_warm_start);
+    pile_sweep(pile, workers, pair_solve);
+    for_bodies(pile, workers, bodies_advance);
+    pile_sweep(pile, workers, pair_relax);
+    for_bodies(pile, workers, bodies_roll);
+    pile->time += 1.0f / pile->def.rate;
+    pile->substeps++;
+}
+
+// --- until at rest ---
+
+static int lost_remove(ty_pile* pile)
+{
+    bool* gone = TY_ALLOC(bool, pile->count);
+    int lost = 0;
+    for (int i = 0; i < pile->count && pile->def.container; i++)
+    {
+        gone[i] = ty_container_lost(pile->def.container, pile->bodies[i].position);
+        lost += gone[i];
+    }
+    if (lost > 0)
+        ty_pile_remove(pile, gone);
+    ty_free(gone);
+    return lost;
+}
+
+static bool all_wake(ty_pile* pile)
+{
+    bool any = false;
+    for (int i = 0; i < pile->count; i++)
+        if (pile->motions[i].asleep)
+        {
+            body_wake(pile, i);
+            any = true;
+        }
+    return any;
+}
+
+// While few bodies move the others sleep; rest is found with all of them awake.
+ty_pile_end ty_pile_settle(ty_pile* pile, float max_seconds, ty_workers* workers, int* lost)
+{
+    int interval = (int)(CHECK_TIME * pile->def.rate + 0.5f), quiet = 0, steps = (int)(max_seconds * pile->def.rate);
+    int lost_count = 0;
+    ty_pile_end end = TY_PILE_TIME;
+    for (int k = 1; k <= steps && end == TY_PILE_TIME; k++)
+    {
+        ty_pile_step(pile, workers);
+        if (k % interval != 0)
+            continue;
+        int out = lost_remove(pile);
+        lost_count += out;
+        float rms, largest;
+        pile_speeds(pile, &rms, &largest);
+        bool calm = rms < QUIET_RMS && largest < QUIET_MAX && out == 0 && pile->time > QUIET_AFTER;
+        quiet = calm && !all_wake(pile) ? quiet + 1 : 0;
+        pile->may_sleep = !calm && (float)k > SLEEP_AFTER * pile->def.rate;
+        if (ty_cancel_requested())
+            end = TY_PILE_CANCELED;
+        else if (quiet >= QUIET_CHECKS)
+            end = TY_PILE_REST;
+    }
+    pile->may_sleep = false;
+    all_wake(pile);
+    if (lost)
+        *lost = lost_count;
+    return end;
+}

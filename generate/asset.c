@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The list of generators.
+#include <string.h>
+#include <tsuya/generate/aggregate_recipe.h>
+#include <tsuya/generate/asset.h>
+
+static const ty_generator* const generators[] = {&ty_aggregate_generator};
+
+const ty_generator* const* ty_generator_list(int* count)
+{
+    *count = (int)(sizeof generators / sizeof *generators);
+    return generators;
+}
+
+const ty_generator* ty_generator_find(const char* kind)
+{
+    int count;
+    const ty_generator* const* list = ty_generator_list(&count);
+    for (int i = 0; i < count; i++)
+        if (strcmp(list[i]->kind, kind) == 0)
+            return list[i];
+    return NULL;
+}

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rigid grains of balls under gravity: fill a space, settle with friction until at rest, polish overlaps away.
+#pragma once
+#include <tsuya/generate/container.h>
+#include <tsuya/generate/grain.h>
+
+typedef struct ty_pile_def
+{
+    ty_vec3 gravity;        // m/s^2
+    float friction;         // Coulomb coefficient, grains and walls alike, >= 0
+    float rolling;          // rolling resistance, of half the mean width, >= 0
+    float rate;             // substeps per second, 500..20000
+    const ty_grain* grains; // borrowed, must outlive the pile
+    int grain_count;
+    const ty_container* container; // borrowed; NULL = no walls
+} ty_pile_def;
+
+ty_pile_def ty_pile_def_default(void); // no grains, no walls
+
+typedef struct ty_body
+{
+    ty_vec3 position; // m, of the centre of mass
+    ty_quat rotation;
+    ty_vec3 velocity; // m/s
+    ty_vec3 spin;     // rad/s, world
+    float scale;      // of the grain's own size
+    uint32_t grain;   // index into the def's grains
+} ty_body;
+
+// The upper surface of a fill: level + crown * (1 - (x/rx)^2 - (z/rz)^2), or the product of both factors over a box.
+typedef struct ty_fill_top
+{
+    float level, crown;       // m; crown >= 0
+    float radius_x, radius_z; // m
+    bool turned;
+} ty_fill_top;
+
+typedef struct ty_pile ty_pile; // opaque; one thread at a time drives it
+
+// Copies def. The bodies keep their order: it is the identity of a result.
+ty_pile* ty_pile_create(const ty_pile_def* def);
+void ty_pile_destroy(ty_pile* pile); // NULL is allowed
+void ty_pile_add(ty_pile* pile, const ty_body* bodies, int count);
+void ty_pile_remove(ty_pile* pile,
+                    const bool* gone); // [count]; the others keep their order and their contacts' impulses
+int ty_pile_count(const ty_pile* pile);
+const ty_body* ty_pile_bodies(const ty_pile* pile); // borrowed until the next change
+
+float ty_fill_top_height(const ty_fill_top* top, ty_vec3 p); // of the surface above p, m
+
+// Grows all bodies from half their size within the walls and below top, and pushes overlaps apart; velocities end at 0.
+// Fill by inflation: Sakurai & Miyata 2014 in purpose, position projection (Macklin et al. 2014) in means.
+void ty_pile_inflate(ty_pile* pile, const ty_fill_top* top, int sweeps, ty_workers* workers);
+
+// One substep of 1/rate: soft contacts by sequential impulses that are kept from substep to substep, then a sweep
+// without bias ("relax", Catto's soft step), friction, rolling resistance. Equal bits for any worker count.
+void ty_pile_step(ty_pile* pile, ty_workers* workers);
+
+typedef enum ty_pile_end
+{
+    TY_PILE_REST,     // three checks in a row below the bounds
+    TY_PILE_TIME,     // max_seconds have passed
+    TY_PILE_CANCELED, // ty_cancel_requested
+} ty_pile_end;
+
+// Steps until at rest (rms of ball speeds < .3 mm/s and largest < 1.7 mm/s at three checks 20 ms apart). Bodies lost
+// over the rim are taken out and counted in *lost (NULL is allowed).
+ty_pile_end ty_pile_settle(ty_pile* pile, float max_seconds, ty_workers* workers, int* lost);
+
+// Projects overlaps away without velocities: for display; keep a copy of the bodies to go on from.
+void ty_pile_polish(ty_pile* pile, int sweeps, ty_workers* workers);
+void ty_pile_set_bodies(ty_pile* pile, const ty_body* bodies); // count as it is
+
+typedef struct ty_pile_metrics
+{
+    int count;
+    int floating;       // neither at a wall nor held at three points by two neighbours, gaps up to 2 % of the width
+    float contacts;     // neighbours per grain, mean
+    float overlap_max;  // of the mean width
+    float overlap_mean; // over the pairs in contact
+    float speed_rms;    // m/s, of the balls
+    float speed_max;
+    float phi;    // volume share of the grains below the surface, 0 where the pile is too small to tell
+    int substeps; // so far
+} ty_pile_metrics;
+
+// held (NULL is allowed): [count], false for floating bodies.
+void ty_pile_measure(ty_pile* pile, ty_pile_metrics* out, bool* held);
+
+// Sum of all bodies' momentum, unit masses of a mean grain: for tests of conservation.
+ty_vec3 ty_pile_momentum(const ty_pile* pile);
+// Distance below the pile's own upper surface, 0 at the top, per body: depth[count], m.
+void ty_pile_depth(const ty_pile* pile, float* depth);
