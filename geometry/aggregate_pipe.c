@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An aggregate through a pipe: flat arrays behind small headers, in the machine's own byte order.
 #include "aggregate_gather.h"
-#include <stdio.h>
 #include <string.h>
 
 #define MAGIC 0x61796f74u
@@ -160,11 +159,9 @@ static ty_status take_parts(receiver* r, ty_mesh* mesh, uint32_t parts)
 // As the other mesh readers: normals that the file lacks are smooth, but for edges above 40 degrees.
 static ty_status finish_mesh(receiver* r, ty_mesh* mesh, int index, bool has_normals)
 {
-    char name[32];
-    snprintf(name, sizeof name, "prototype %d", index);
-    ty_status status = ty_mesh_validate(mesh, name, r->error);
-    if (status != TY_OK)
-        return status;
+    ty_error fault;
+    if (ty_mesh_validate(mesh, r->name, &fault) != TY_OK)
+        return ty_error_set_at(r->error, TY_BAD_FILE, r->name, 0, 0, "prototype %d: %.900s", index, fault.text);
     for (uint32_t i = 0; i < mesh->vertex_count && has_normals; i++)
         if (!ty_is_finite3(mesh->normals[i]))
             return ty_error_set_at(r->error, TY_BAD_FILE, r->name, 0, 0,

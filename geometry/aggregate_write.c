@@ -54,11 +54,9 @@ static ty_status check_prototypes(const ty_aggregate* a, const char* path, ty_er
     {
         if (!a->prototypes[p])
             return ty_error_set_at(error, TY_BAD_INPUT, path, 0, 0, "prototype %d is missing", p);
-        char name[32];
-        snprintf(name, sizeof name, "prototype %d", p);
-        ty_error fault = {0};
-        if (ty_mesh_validate(a->prototypes[p], name, &fault) != TY_OK)
-            return ty_error_set_at(error, TY_BAD_INPUT, path, 0, 0, "%.900s", fault.text);
+        ty_error fault;
+        if (ty_mesh_validate(a->prototypes[p], path, &fault) != TY_OK)
+            return ty_error_set_at(error, TY_BAD_INPUT, path, 0, 0, "prototype %d: %.900s", p, fault.text);
         for (int k = 0; k < a->prototypes[p]->attribute_count; k++)
             if (!name_is_free(a->prototypes[p]->attributes[k].name, reserved))
                 return ty_error_set_at(error, TY_BAD_INPUT, path, 0, 0, "prototype %d: \"%s\" cannot name an attribute",

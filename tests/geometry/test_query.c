@@ -79,22 +79,76 @@ static void closest_on_a_sphere(void** state)
     }
 }
 
-// A point that is closest to the triangles' edges and corners: the best over all triangles by brute force.
-static void closest_is_the_least(void** state)
+static void closest_on_a_torus(void** state)
 {
     const stage* s = *state;
     ty_rng rng = ty_rng_make((ty_seed){2}, 0, 0);
-    for (int i = 0; i < 50; i++)
+    for (int i = 0; i < 500; i++)
     {
         ty_vec3 p = random_point(&rng, 1.6f);
         ty_closest c;
         assert_true(ty_world_closest(s->world, s->torus_prototype, p, 10.0f, &c));
-        for (uint32_t v = 0; v < s->torus->vertex_count; v++)
-            assert_true(ty_length(ty_sub(s->torus->positions[v], p)) >= c.distance * 0.99999f);
         float ring = sqrtf(p.x * p.x + p.z * p.z) - 1.0f;
         float exact = fabsf(sqrtf(ring * ring + p.y * p.y) - 0.4f);
         assert_true(fabsf(c.distance - exact) < 3e-3f);
     }
+}
+
+// On an octahedron most points are closest to an edge or a corner. No point of any face, sampled finely, is closer.
+static void closest_is_the_least(void** state)
+{
+    (void)state;
+    stage s;
+    ty_error error;
+    ty_world_def def = ty_world_def_default();
+    ty_mesh* mesh = make_sphere(4, 1);
+    assert_int_equal(ty_world_create(&def, &s.world, &error), TY_OK);
+    add(s.world, mesh, ty_affine_identity(), &s.sphere_prototype);
+    assert_int_equal(ty_world_commit(s.world, &error), TY_OK);
+    ty_rng rng = ty_rng_make((ty_seed){3}, 0, 0);
+    for (int i = 0; i < 300; i++)
+    {
+        ty_vec3 p = random_point(&rng, 2.0f);
+        ty_closest c;
+        assert_true(ty_world_closest(s.world, s.sphere_prototype, p, 10.0f, &c));
+        float least = 10.0f;
+        for (uint32_t t = 0; t < mesh->triangle_count; t++)
+            for (int k = 0; k < 33 * 33; k++)
+            {
+                float u = (float)(k % 33) / 32.0f, v = (float)(k / 33) / 32.0f;
+                const uint32_t* n = mesh->triangles[t];
+                ty_vec3 at = ty_mul(mesh->positions[n[0]], 1.0f - u - v);
+                at = ty_mad(ty_mad(at, mesh->positions[n[1]], u), mesh->positions[n[2]], v);
+                if (u + v <= 1.0f)
+                    least = ty_min(least, ty_length(ty_sub(at, p)));
+            }
+        assert_true(c.distance <= least + 1e-6f);
+        assert_true(c.distance >= least - 0.045f);
+    }
+    ty_world_destroy(s.world);
+    ty_mesh_destroy(mesh);
+}
+
+// Shading normals that point the wrong way are turned to the side of the faces.
+static void inward_normals_are_turned(void** state)
+{
+    (void)state;
+    stage s;
+    ty_error error;
+    ty_world_def def = ty_world_def_default();
+    ty_mesh* mesh = make_sphere(32, 15);
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        mesh->normals[i] = ty_neg(mesh->normals[i]);
+    assert_int_equal(ty_world_create(&def, &s.world, &error), TY_OK);
+    add(s.world, mesh, ty_affine_identity(), &s.sphere_prototype);
+    assert_int_equal(ty_world_commit(s.world, &error), TY_OK);
+    ty_hit hit;
+    ty_surface_point q;
+    assert_true(ty_world_intersect_instance(s.world, 0, 0, (ty_vec3){0, 0, 0}, (ty_vec3){0.6f, 0, 0.8f}, 10.0f, &hit));
+    ty_world_surface(s.world, &hit, &q);
+    assert_true(ty_dot(q.ns, (ty_vec3){0.6f, 0, 0.8f}) > 0.99f);
+    ty_world_destroy(s.world);
+    ty_mesh_destroy(mesh);
 }
 
 static void inside_by_formula(void** state)
@@ -261,7 +315,8 @@ static void offset_clears_the_surface(void** state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closest_on_a_sphere),    cmocka_unit_test(closest_is_the_least),
+        cmocka_unit_test(closest_on_a_sphere),    cmocka_unit_test(closest_on_a_torus),
+        cmocka_unit_test(closest_is_the_least),   cmocka_unit_test(inward_normals_are_turned),
         cmocka_unit_test(inside_by_formula),      cmocka_unit_test(surface_of_a_stretched_sphere),
         cmocka_unit_test(mirrored_stays_outward), cmocka_unit_test(one_instance_alone),
         cmocka_unit_test(tangent_follows_the_uv), cmocka_unit_test(offset_clears_the_surface),

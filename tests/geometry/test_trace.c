@@ -185,7 +185,7 @@ static void fast_equals_reference_with_skips(void** state)
     check_tally(&sum);
 }
 
-// The n-th surface along a ray, found by skipping nothing but by starting again behind each hit.
+// A skipped instance is passed up to the distance given, and only the nearer hits of it.
 static void skip_passes_the_instance(void** state)
 {
     const stage* s = *state;
@@ -318,6 +318,50 @@ static void far_from_the_origin(void** state)
     ty_world_destroy(world[1]);
 }
 
+// The fast path gives the very bits of the nearest of all instances tried one by one: nothing is cut off. Prototypes
+// are stretched askew, and half of the rays come from far away, where the maps round most.
+static void fast_path_cuts_nothing(void** state)
+{
+    (void)state;
+    ty_aggregate* heap = make_heap(3);
+    ty_affine askew = {{1.0f, 0.4f, 0.2f}, {0.5f, 0.7f, -0.6f}, {-0.1f, 0.5f, 1.1f}, {0.3f, -0.2f, 0.1f}};
+    ty_mesh_transform(heap->prototypes[0], &askew);
+    ty_world* world = NULL;
+    ty_error error;
+    ty_world_def def = ty_world_def_default();
+    ty_affine identity = ty_affine_identity();
+    uint32_t object;
+    assert_int_equal(ty_world_create(&def, &world, &error), TY_OK);
+    assert_int_equal(ty_world_add_aggregate(world, heap, &identity, opaque, &object, &error), TY_OK);
+    assert_int_equal(ty_world_commit(world, &error), TY_OK);
+    ty_rng rng = ty_rng_make((ty_seed){13}, 0, 0);
+    int hits = 0;
+    for (int i = 0; i < 3000; i++)
+    {
+        ty_ray ray = random_ray(&rng, i);
+        if (i & 1)
+            ray.origin = ty_mad(ray.origin, ray.direction, -60.0f);
+        ray.t_max = TY_FLOAT_MAX;
+        ty_hit fast, nearest, one;
+        nearest.t = TY_FLOAT_MAX;
+        bool any = false;
+        for (uint32_t k = 0; k < INSTANCES; k++)
+            if (ty_world_intersect_instance(world, 0, k, ray.origin, ray.direction, nearest.t, &one) &&
+                one.t < nearest.t)
+            {
+                nearest = one;
+                any = true;
+            }
+        assert_int_equal(ty_world_intersect(world, &ray, &fast), any);
+        if (any)
+            assert_memory_equal(&fast, &nearest, sizeof fast);
+        hits += any;
+    }
+    assert_true(hits > 1000);
+    ty_world_destroy(world);
+    ty_aggregate_destroy(heap);
+}
+
 static void numbering(void** state)
 {
     stage* s = *state;
@@ -371,6 +415,7 @@ int main(void)
         cmocka_unit_test(one_sided_objects),
         cmocka_unit_test(two_builds_are_one),
         cmocka_unit_test(far_from_the_origin),
+        cmocka_unit_test(fast_path_cuts_nothing),
         cmocka_unit_test(numbering),
         cmocka_unit_test(bad_input),
     };
