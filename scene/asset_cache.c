@@ -7,11 +7,11 @@
 #include <string.h>
 #include <tsuya/base/log.h>
 
-static ty_status cache_folder(const ty_scene_options* options, char out[TY_PATH_MAX], ty_error* error)
+ty_status ty_scene_cache_folder(const char* given, char* out, ty_error* error)
 {
     const char *own = getenv("TSUYA_CACHE"), *xdg = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
-    if (options->cache_folder)
-        ty_path_join(".", options->cache_folder, out);
+    if (given)
+        ty_path_join(".", given, out);
     else if (own && own[0])
         ty_path_join(".", own, out);
     else if (xdg && xdg[0])
@@ -64,7 +64,7 @@ ty_status ty_asset_cache_get(ty_loader* loader, const char* name, const ty_recip
     double start = ty_time_now();
     ty_status status = ty_recipe_key(recipe, &loader->files, key, error);
     if (status == TY_OK)
-        status = cache_folder(loader->options, folder, error);
+        status = ty_scene_cache_folder(loader->options->cache_folder, folder, error);
     if (status != TY_OK)
         return status;
     snprintf(file, sizeof(file), "%s.glb", key);

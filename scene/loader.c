@@ -138,6 +138,7 @@ bool ty_loader_resolve(ty_loader* loader)
     if (!loader->is_recipe)
         take_search(loader);
     ty_override_sets(loader, false);
+    ty_override_quick(loader);
     if (!loader->is_recipe)
         inline_recipes(loader);
     ty_override_check_defines(loader);

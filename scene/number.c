@@ -71,11 +71,11 @@ void ty_param_range_text(const ty_param* row, ty_text* out)
     if (row->minimum == 0.0 && row->maximum == 0.0)
         low = high = false;
     if (low && high)
-        ty_text_format(out, " %g..%g", row->minimum, row->maximum);
+        ty_text_format(out, " %.9g..%.9g", row->minimum, row->maximum);
     else if (low)
-        ty_text_format(out, " of at least %g", row->minimum);
+        ty_text_format(out, " of at least %.9g", row->minimum);
     else if (high)
-        ty_text_format(out, " of at most %g", row->maximum);
+        ty_text_format(out, " of at most %.9g", row->maximum);
     if (row->unit && row->unit[0])
         ty_text_format(out, " %s", row->unit);
 }

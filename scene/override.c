@@ -4,6 +4,7 @@
 #include "nearest.h"
 #include "text.h"
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -166,25 +167,54 @@ static void set_value(ty_override* o)
     *slot = o->value;
 }
 
+static void apply_set(ty_loader* loader, const char* argument, bool early)
+{
+    ty_override o = {.loader = loader};
+    o.value = parse_value(loader, "--set", argument, &o.source);
+    if (!o.value || !split_path(&o, strcspn(argument, "=")))
+        return;
+    if (!early)
+    {
+        ty_scope scope = {&loader->tree, {loader->variables}, 1};
+        ty_scope_expand(&scope, &o.value, 1);
+    }
+    set_value(&o);
+}
+
 void ty_override_sets(ty_loader* loader, bool early)
 {
     for (int i = 0; i < loader->options->set_count && !loader->tree.stopped; ++i)
     {
         const char* argument = loader->options->sets[i];
         bool is_early = strncmp(argument, "vars.", 5) == 0 || strncmp(argument, "search", 6) == 0;
-        if (is_early != early)
-            continue;
-        ty_override o = {.loader = loader};
-        o.value = parse_value(loader, "--set", argument, &o.source);
-        if (!o.value || !split_path(&o, strcspn(argument, "=")))
-            continue;
-        if (!early)
-        {
-            ty_scope scope = {&loader->tree, {loader->variables}, 1};
-            ty_scope_expand(&scope, &o.value, 1);
-        }
-        set_value(&o);
+        if (is_early == early)
+            apply_set(loader, argument, early);
     }
+}
+
+// A wrong size is left for the table to report.
+static void film_size(const ty_loader* loader, int size[2])
+{
+    memcpy(size, ty_film_def_default().size, 2 * sizeof size[0]);
+    const ty_node* film = loader->root->kind == TY_NODE_MAP ? ty_node_get(loader->root, "film") : NULL;
+    const ty_node* list = film && film->kind == TY_NODE_MAP ? ty_node_get(film, "size") : NULL;
+    for (int i = 0; list && list->kind == TY_NODE_LIST && i < 2 && i < list->count; ++i)
+    {
+        if (list->items[i]->kind == TY_NODE_SCALAR)
+            size[i] = atoi(list->items[i]->text);
+    }
+}
+
+void ty_override_quick(ty_loader* loader)
+{
+    if (!loader->options->quick || loader->is_recipe || loader->tree.stopped)
+        return;
+    int size[2];
+    char text[64];
+    film_size(loader, size);
+    snprintf(text, sizeof text, "film.size=[%d, %d]", (size[0] + 1) / 2, (size[1] + 1) / 2);
+    apply_set(loader, text, false);
+    apply_set(loader, "render.samples=16", false);
 }
 
 void ty_override_variables(ty_loader* loader)
@@ -237,6 +267,8 @@ const char* ty_override_text(ty_arena* arena, const ty_scene_options* options)
         ty_text_format(&text, "%s-D %s", text.size ? " " : "", options->variables[i]);
     for (int i = 0; i < options->set_count; ++i)
         ty_text_format(&text, "%s--set %s", text.size ? " " : "", options->sets[i]);
+    if (options->quick)
+        ty_text_format(&text, "%s--quick", text.size ? " " : "");
     char* whole = ty_text_take(&text);
     const char* copy = ty_arena_string(arena, whole);
     ty_free(whole);

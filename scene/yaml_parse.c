@@ -22,6 +22,9 @@ typedef struct ty_builder
 
 static ty_place place_of(const ty_builder* builder, yaml_mark_t mark)
 {
+    const char* argument = builder->source->argument;
+    if (argument && mark.line > 0) // behind the end: libyaml adds a line
+        return (ty_place){builder->source, 1, (int)strlen(argument) + 1};
     int column = (int)mark.column + 1 + (mark.line == 0 ? builder->source->column : 0);
     return (ty_place){builder->source, (int)mark.line + 1, column};
 }
