@@ -217,22 +217,126 @@ static void test_irradiance_of_lights(void** state)
         0.25 * pi + 1.25 + pi * 7.0 * 0.25 / 5.0 * 2.0 / sqrt(5.0) + 3.0 * rectangle_irradiance(1.0, 0.5, 1.0));
 }
 
-// Both techniques alone give the light of both together: a sphere light by weights, and by rays alone in the same
-// picture.
-static void test_light_behind_a_lid_is_dark(void** state)
+// A lid on the way takes all the light, one beyond the lamp none, and a lamp under the floor lights nothing above it.
+static void test_shadows(void** state)
 {
     (void)state;
-    picture p = render_floor("  - { type: point, center: [0, 2, 0], intensity: 5 }\n",
-                             "  - { mesh: lid, material: grey, translate: [0, 1, 0.00001], scale: [1, 1, 1] }\n");
-    // The lid hides the origin from the lamp, and from the camera: its upper side is lit from 1 m.
-    double mean, error;
+    const char* lamp = "  - { type: point, center: [1, 1, 0], intensity: 5 }\n";
+    const struct
+    {
+        const char *light, *lid;
+        double expected;
+    } cases[] = {
+        {lamp, "  - { mesh: lid, material: grey, translate: [0.5, 0.5, 0] }\n", 0.0},
+        {lamp, "  - { mesh: lid, material: grey, translate: [2, 2, 0] }\n", 5.0 / 2.0 * sqrt(0.5)},
+        {lamp, "  - { mesh: lid, material: grey, translate: [0, 0.5, 0] }\n",
+         5.0 / 1.25 * 0.5 / sqrt(1.25)}, // on the lid
+        {"  - { type: point, center: [0, -2, 0], intensity: 5 }\n", "", 0.0},
+    };
+    for (int i = 0; i < 4; ++i)
+    {
+        picture p = render_floor(cases[i].light, cases[i].lid);
+        double mean, error;
+        mean_of(p.film, &mean, &error);
+        if (fabs(mean * 2.0 * 3.14159265358979 - cases[i].expected) > 1e-3)
+            fail_msg("case %d: irradiance %g, expected %g", i, mean * 2.0 * 3.14159265358979, cases[i].expected);
+        ty_film_destroy(p.film);
+    }
+}
+
+static picture render_yaml(const char* yaml, int samples)
+{
+    ty_scene* scene = scene_load(yaml);
+    picture p = render_all(scene, samples, 2);
+    ty_scene_destroy(scene);
+    return p;
+}
+
+// Inside a closed, glowing box of albedo 1/2 the light is Le (1 + 1/2 + 1/4 + ...), by roulette or without.
+static void test_roulette_is_unbiased(void** state)
+{
+    (void)state;
+    const int roulette_depths[] = {1, 4, 64};
+    for (int i = 0; i < 3; ++i)
+    {
+        char yaml[2048];
+        snprintf(
+            yaml, sizeof yaml,
+            "tsuya: 1\n"
+            "film: { size: [32, 32] }\n"
+            "render: { max_depth: 64, roulette_depth: %d, seed: 4 }\n"
+            "camera: { position: [0, 0, 0], look_at: [0, 0, -1], vfov: 60 }\n"
+            "assets: { wall: { shape: plane, size: [1.1, 0, 1.1] } }\n"
+            "materials:\n"
+            "  m: { model: surface, base_color: 0.5, specular_weight: 0, emission_luminance: 3, emission_color: 1 }\n"
+            "objects:\n"
+            "  - { mesh: wall, material: m, translate: [0, -1, 0] }\n"
+            "  - { mesh: wall, material: m, translate: [0, 1, 0], rotate: [180, 0, 0] }\n"
+            "  - { mesh: wall, material: m, translate: [0, 0, -1], rotate: [90, 0, 0] }\n"
+            "  - { mesh: wall, material: m, translate: [0, 0, 1], rotate: [-90, 0, 0] }\n"
+            "  - { mesh: wall, material: m, translate: [-1, 0, 0], rotate: [0, 0, -90] }\n"
+            "  - { mesh: wall, material: m, translate: [1, 0, 0], rotate: [0, 0, 90] }\n",
+            roulette_depths[i]);
+        picture p = render_yaml(yaml, 64);
+        double mean, error;
+        mean_of(p.film, &mean, &error);
+        if (fabs(mean - 6.0) > 3.0 * error + 1e-4 || error > 0.02)
+            fail_msg("roulette from %d: %g +- %g, expected 6", roulette_depths[i], mean, error);
+        // No path ends before the roulette begins, and few go on for long after.
+        uint64_t certain = p.stats.camera_rays * (uint64_t)(roulette_depths[i] - 1);
+        assert_true(roulette_depths[i] < 64
+                        ? p.stats.path_rays > certain && p.stats.path_rays < 12 * p.stats.camera_rays
+                        : p.stats.path_rays == 64 * p.stats.camera_rays);
+        ty_film_destroy(p.film);
+    }
+}
+
+// Through the centre of a glass ball: F + (1-F)^2 t (1 + F t + ...), t = 1/4 over twice the tint's depth.
+static void test_glass_absorbs_along_the_way(void** state)
+{
+    (void)state;
+    picture p = render_yaml("tsuya: 1\n"
+                            "film: { size: [8, 8] }\n"
+                            "render: { max_depth: 32, roulette_depth: 32 }\n"
+                            "camera: { position: [0, 0, 1], look_at: [0, 0, 0], vfov: 0.05 }\n"
+                            "assets: { ball: { shape: sphere, radius: 0.05, divisions: 128 } }\n"
+                            "materials:\n"
+                            "  m: { model: surface, transmission_weight: 1, transmission_color: 0.5,\n"
+                            "       transmission_depth: 0.05, specular_roughness: 0, specular_ior: 1.5 }\n"
+                            "objects: [ { mesh: ball, material: m, rotate: [10, 20, 30] } ]\n"
+                            "lights: [ { type: environment, radiance: 1 } ]\n",
+                            256);
+    double mean, error, expected = 0.04 + 0.96 * 0.96 * 0.25 / (1.0 - 0.04 * 0.25);
     mean_of(p.film, &mean, &error);
-    assert_true(fabs(mean * 2.0 * 3.14159265358979 - 5.0) < 1e-3);
+    if (fabs(mean - expected) > 3.0 * error + 1e-3 || error > 0.003)
+        fail_msg("%g +- %g, expected %g", mean, error, expected);
     ty_film_destroy(p.film);
-    p = render_floor("  - { type: point, center: [0, -2, 0], intensity: 5 }\n", "");
-    mean_of(p.film, &mean, &error);
-    assert_true(mean == 0.0);
-    ty_film_destroy(p.film);
+}
+
+// Under a wide roof 5 cm above the floor: open to rays of 4 cm, closed to rays of 5 m.
+static void test_ambient_occlusion_knows_its_distance(void** state)
+{
+    (void)state;
+    ty_scene* scene = scene_load("tsuya: 1\n"
+                                 "film: { size: [8, 8] }\n"
+                                 "render: { integrator: ao }\n"
+                                 "camera: { position: [0, 0.04, 0], look_at: [0, 0, 0], up: [0, 0, -1], vfov: 1 }\n"
+                                 "assets: { plane: { shape: plane, size: [100, 0, 100] } }\n"
+                                 "materials: { m: { model: surface } }\n"
+                                 "objects:\n"
+                                 "  - { mesh: plane, material: m }\n"
+                                 "  - { mesh: plane, material: m, translate: [0, 0.05, 0] }\n");
+    const float distances[] = {0.04f, 5.0f}, expected[] = {1.0f, 0.0f};
+    for (int i = 0; i < 2; ++i)
+    {
+        scene->render.ao_distance = distances[i];
+        picture p = render_all(scene, 16, 1);
+        double mean, error;
+        mean_of(p.film, &mean, &error);
+        assert_true(fabs(mean - (double)expected[i]) < 0.01); // the lowest rays miss the roof within 5 m
+        ty_film_destroy(p.film);
+    }
+    ty_scene_destroy(scene);
 }
 
 // A tiny sun in an image over a dim sky: light sampling and rays share it without bias.
@@ -501,7 +605,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_threads_tiles_and_splits_change_nothing),
         cmocka_unit_test(test_irradiance_of_lights),
-        cmocka_unit_test(test_light_behind_a_lid_is_dark),
+        cmocka_unit_test(test_shadows),
+        cmocka_unit_test(test_roulette_is_unbiased),
+        cmocka_unit_test(test_glass_absorbs_along_the_way),
+        cmocka_unit_test(test_ambient_occlusion_knows_its_distance),
         cmocka_unit_test(test_environment_image_with_a_sun),
         cmocka_unit_test(test_furnace),
         cmocka_unit_test(test_channels_describe_the_scene),
