@@ -121,18 +121,26 @@ static ty_status resolve_space(const ty_color* color, const char* name, const ch
     return unknown_name(error, "colour space", name, known, count);
 }
 
-// display NULL = the default.
+// The known name that equals name; name NULL = the first.
+static ty_status pick(const char* kind, const char* name, const char* const* known, int count, const char** out,
+                      ty_error* error)
+{
+    for (int i = 0; i < count; i++)
+        if (!name || strcmp(known[i], name) == 0)
+        {
+            *out = known[i];
+            return TY_OK;
+        }
+    return unknown_name(error, kind, name ? name : "", known, count);
+}
+
 static ty_status resolve_display(const ty_color* color, const char* name, const char** out, ty_error* error)
 {
     const char* known[MAX_NAMES];
     int count = 0;
     while (count < MAX_NAMES && (known[count] = ty_ocio_display(color->ocio, count)))
-        if (!name || strcmp(known[count++], name) == 0)
-        {
-            *out = ty_ocio_display(color->ocio, name ? count - 1 : 0);
-            return TY_OK;
-        }
-    return unknown_name(error, "display", name ? name : "", known, count);
+        count++;
+    return pick("display", name, known, count, out, error);
 }
 
 static ty_status resolve_view(const ty_color* color, const char* display, const char* name, const char** out,
@@ -141,12 +149,8 @@ static ty_status resolve_view(const ty_color* color, const char* display, const 
     const char* known[MAX_NAMES];
     int count = 0;
     while (count < MAX_NAMES && (known[count] = ty_ocio_view(color->ocio, display, count)))
-        if (!name || strcmp(known[count++], name) == 0)
-        {
-            *out = ty_ocio_view(color->ocio, display, name ? count - 1 : 0);
-            return TY_OK;
-        }
-    return unknown_name(error, "view", name ? name : "", known, count);
+        count++;
+    return pick("view", name, known, count, out, error);
 }
 
 static ty_status finish(ty_ocio_result result, const char* text, ty_error* error)

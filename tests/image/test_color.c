@@ -13,6 +13,7 @@ static ty_color* color;
 static int load_embedded(void** state)
 {
     (void)state;
+    setenv("OCIO_LOGGING_LEVEL", "debug", 1); // looked at once; test_nothing_is_printed
     return ty_color_create(NULL, &color, NULL) == TY_OK ? 0 : -1;
 }
 
@@ -66,6 +67,10 @@ static void test_views_do_what_they_say(void** state)
     double srgb = 1.055 * pow(0.18, 1 / 2.4) - 0.055;
     assert_pixel(pixel, srgb, srgb, srgb, 1e-4);
     assert_true(pixel[3] == 0.3f); // alpha is left alone
+    float red[3] = {1, 0, 0};
+    converted("lin_rec709", "ACEScg", red);
+    developed("sRGB", "Untonemapped", 0.0f, red);
+    assert_pixel(red, 1, 0, 0, 2e-3);
     float bt1886[3] = {0.18f, 0.18f, 0.18f}, gamma = powf(0.18f, 1.0f / 2.4f);
     developed("Rec.1886", "Untonemapped", 0.0f, bt1886);
     assert_pixel(bt1886, gamma, gamma, gamma, 1e-4);
@@ -249,12 +254,10 @@ static void test_a_foreign_configuration(void** state)
 
 static void make_noise(void* context)
 {
-    (void)context;
     float pixel[3] = {1, 2, 3};
     ty_color* other = NULL;
-    setenv("OCIO_LOGGING_LEVEL", "debug", 1);
     if (ty_color_create("a_config_that_is_not_there", &other, NULL) == TY_OK ||
-        ty_color_create(NULL, &other, NULL) != TY_OK ||
+        ty_color_create(context, &other, NULL) != TY_OK ||
         ty_color_develop(other, NULL, NULL, 0.0f, pixel, 1, 3, NULL) != TY_OK)
         _exit(1);
     ty_color_destroy(other);
@@ -263,7 +266,10 @@ static void make_noise(void* context)
 static void test_nothing_is_printed(void** state)
 {
     (void)state;
-    process_end end = process_run(make_noise, NULL);
+    char text[sizeof foreign + 40]; // an unknown key is worth a warning to the library
+    int size = snprintf(text, sizeof text, "%sunknown_key: 1\n", foreign);
+    assert_int_equal(ty_file_write(in_folder("a.ocio"), text, (size_t)size, NULL), TY_OK);
+    process_end end = process_run(make_noise, (void*)in_folder("a.ocio"));
     assert_int_equal(end.exit_status, 0);
     assert_string_equal(end.text, "");
 }
@@ -315,7 +321,7 @@ int main(void)
         cmocka_unit_test(test_description),
         cmocka_unit_test(test_precedence),
         cmocka_unit_test_setup_teardown(test_a_foreign_configuration, folder_setup, folder_teardown),
-        cmocka_unit_test(test_nothing_is_printed),
+        cmocka_unit_test_setup_teardown(test_nothing_is_printed, folder_setup, folder_teardown),
     };
     return cmocka_run_group_tests(tests, load_embedded, unload);
 }

@@ -2,6 +2,7 @@
 // EXR files that are no good are refused with a reason; outputs are complete or absent.
 #include "base/alloc_sweep.h"
 #include "base/cmocka_all.h"
+#include "base/process.h"
 #include "image_folder.h"
 #include <math.h>
 #include <signal.h>
@@ -230,6 +231,24 @@ static void test_unwritable_outputs_say_why(void** state)
     assert_int_equal(folder_count(0), 1);
 }
 
+static void read_damaged(void* context)
+{
+    const ty_bytes* bytes = context;
+    ty_exr* exr = NULL;
+    if (ty_exr_read_memory("bad.exr", bytes->data, bytes->size - 9, &exr, NULL) != TY_BAD_FILE)
+        _exit(1);
+}
+
+static void test_the_library_prints_nothing(void** state)
+{
+    (void)state;
+    ty_bytes bytes = sound_bytes();
+    process_end end = process_run(read_damaged, &bytes);
+    assert_int_equal(end.exit_status, 0);
+    assert_string_equal(end.text, "");
+    ty_bytes_term(&bytes);
+}
+
 static ty_status write_and_read(void* context)
 {
     const ty_exr* exr = context;
@@ -262,6 +281,7 @@ int main(void)
         TEST(test_bad_images_are_not_written),
         TEST(test_a_full_disk_leaves_the_old_file),
         TEST(test_unwritable_outputs_say_why),
+        TEST(test_the_library_prints_nothing),
         TEST(test_every_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -13,10 +13,11 @@ typedef struct ty_image
 
 void ty_image_term(ty_image* image);
 
-// Reads EXR of every kind (tiled, multi-part: the first part; DWA), HDR, PNG, JPEG, TIFF... A header whose size is out
-// of proportion to the file, or above 32768 a side, is refused before memory is taken. Alpha as stored.
+// Reads EXR of every kind (tiled, multi-part: the first part; DWA), HDR, PNG, JPEG, TIFF, BMP, TGA, PNM, WebP, DPX,
+// told apart by content. A header whose size is out of proportion to the file, or above 32768 a side, is refused before
+// memory is taken. Alpha as stored.
 TY_CHECKED ty_status ty_image_read(const char* path, ty_image* out, ty_error* error);
 
-// Writes PNG (8 or 16 bit), JPEG or TIFF by extension, atomically; values clamp to 0..1. channels 1, 3 or 4. bits 8 or 16;
-// 8 bit is dithered by nothing: equal input, equal bytes.
+// Writes PNG (8 or 16 bit), JPEG or TIFF by extension, atomically; values clamp to 0..1. channels 1, 3 or 4. bits 8 or
+// 16; 8 bit is dithered by nothing: equal input, equal bytes. JPEG has 8 bits and no alpha.
 TY_CHECKED ty_status ty_image_write(const char* path, const ty_image* image, int bits, ty_error* error);

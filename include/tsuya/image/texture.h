@@ -22,7 +22,8 @@ typedef struct ty_texture_def
 } ty_texture_def;
 
 ty_texture_def ty_texture_def_default(void);
-TY_CHECKED ty_status ty_texture_create(const ty_texture_def* def, const ty_color* color, ty_texture** out, ty_error* error);
+TY_CHECKED ty_status ty_texture_create(const ty_texture_def* def, const ty_color* color, ty_texture** out,
+                                       ty_error* error);
 void ty_texture_destroy(ty_texture* texture); // NULL is allowed
 
 int ty_texture_width(const ty_texture* texture);
