@@ -51,11 +51,13 @@ static bool scatter(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf*
 {
     if (bsdf->kind == TY_BSDF_CDRF)
     {
-        float u[4];
+        // The resolving draws a direction from its second and third number: they get the group's best pair.
+        float pair[4];
         ty_rgb weight = {1.0f, 1.0f, 1.0f};
         ty_rng extra = ty_sampler_extra(sampler, p->bounce);
-        ty_sampler_4d(sampler, ty_group_interior(p->bounce), u);
-        if (!ty_bsdf_resolve(bsdf, &in->scene->shading, u, &extra, &weight))
+        ty_sampler_4d(sampler, ty_group_interior(p->bounce), pair);
+        const float interior[4] = {pair[2], pair[0], pair[1], pair[3]};
+        if (!ty_bsdf_resolve(bsdf, &in->scene->shading, interior, &extra, &weight))
             return false;
         p->beta = ty_rgb_mul(p->beta, weight);
         counters->interior_rays += bsdf->kind == TY_BSDF_CDRF_EXIT;
