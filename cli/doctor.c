@@ -79,12 +79,15 @@ static void check_color(json_t* root)
 
 static void check_cache(json_t* root)
 {
-    char folder[TY_PATH_MAX], probe[TY_PATH_MAX], text[TY_PATH_MAX + 1100];
+    char folder[TY_PATH_MAX] = "", probe[TY_PATH_MAX], text[TY_PATH_MAX + 1100];
     ty_error error = {0};
-    ty_scene_cache_folder(NULL, folder);
-    ty_path_join(folder, ".probe", probe);
-    bool ok = ty_folder_create(folder, &error) == TY_OK && ty_file_write(probe, "", 0, &error) == TY_OK;
-    remove(probe);
+    bool ok = ty_scene_cache_folder(NULL, folder, &error) == TY_OK;
+    if (ok)
+    {
+        ty_path_join(folder, ".probe", probe);
+        ok = ty_file_write(probe, "", 0, &error) == TY_OK;
+        remove(probe);
+    }
     snprintf(text, sizeof text, "%s%s%s", folder, ok ? "" : ": ", ok ? "" : error.text);
     add(root, "cache", ok, text);
 }

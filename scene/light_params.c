@@ -26,6 +26,8 @@ static void light_default(void* def)
 static const char* const kinds[] = {"environment", "rectangle", "sphere", "point", "directional", NULL};
 
 static const ty_param rows[] = {
+    {"name", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_light_def, name), "for overrides: lights.NAME.radiance",
+     false},
     {"type", TY_PARAM_ENUM, "", 0, 0, kinds, NULL, offsetof(ty_light_def, kind), "kind of light", true},
     {"radiance", TY_PARAM_RGB, "W/(m^2 sr)", 0, MANY, NULL, NULL, offsetof(ty_light_def, radiance),
      "environment (times the image), rectangle, sphere", false},
@@ -68,6 +70,8 @@ bool ty_light_has_key(ty_light_kind kind, const char* key)
         [TY_LIGHT_POINT] = {"type", "intensity", "center"},
         [TY_LIGHT_DIRECTIONAL] = {"type", "irradiance", "center", "target"},
     };
+    if (strcmp(key, "name") == 0)
+        return true;
     for (int i = 0; i < 8 && keys[kind][i]; ++i)
         if (strcmp(keys[kind][i], key) == 0)
             return true;

@@ -67,6 +67,7 @@ typedef enum ty_light_kind
 
 typedef struct ty_light_def
 {
+    const char* name;        // NULL = none
     int kind;                // ty_light_kind
     ty_rgb radiance;         // W/(m^2 sr): environment, rectangle, sphere
     ty_rgb intensity;        // W/sr: point
@@ -162,8 +163,8 @@ TY_CHECKED ty_status ty_recipe_make(const char* recipe, const char* output, cons
                                     ty_error_list* errors);
 
 // The folder of made assets: given (may be NULL), else $TSUYA_CACHE, else $XDG_CACHE_HOME/tsuya, else ~/.cache/tsuya.
-// out has TY_PATH_MAX bytes.
-void ty_scene_cache_folder(const char* given, char* out);
+// Created when missing; out has TY_PATH_MAX bytes.
+TY_CHECKED ty_status ty_scene_cache_folder(const char* given, char* out, ty_error* error);
 
 // Every table there is, for `tsuya params`, the schema and the reference.
 const ty_param_table* const* ty_scene_tables(int* count);
