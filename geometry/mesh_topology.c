@@ -128,8 +128,8 @@ static bool edge_is_convex(const ty_mesh* mesh, size_t h1, size_t h2)
     const ty_vec3* p = mesh->positions;
     ty_double3 e = ty_double3_between(p[ty_half_edge_start(mesh, h1)], p[ty_half_edge_end(mesh, h1)]);
     double bend = ty_double3_dot(ty_double3_cross(n1, n2), ty_double3_normalize(e));
-    // A fold right back has no sine to show it.
-    return bend >= -CONVEX_TOLERANCE && (bend > CONVEX_TOLERANCE || ty_double3_dot(n1, n2) >= 0.0);
+    // Beyond a right angle the sine falls again: there its sign alone tells a blade's edge from the bottom of a slit.
+    return ty_double3_dot(n1, n2) >= 0.0 ? bend >= -CONVEX_TOLERANCE : bend > 0.0;
 }
 
 // Counts the edges; true when every edge of exactly two triangles is convex.

@@ -13,7 +13,7 @@ ty_shape_def ty_shape_def_default(void)
         .thickness = 0.003f,
         .foot_radius = 0.024f,
         .foot_height = 0.007f,
-        .curve = 2.2f,
+        .curve = 2.8f,
         .rounding = 0.0f,
         .divisions = 64,
     };
