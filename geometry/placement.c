@@ -81,7 +81,7 @@ static ty_quat quaternion_of(const columns* r)
 // A length within rounding of one is one: rigid maps keep exact scales.
 static float rounded_scale(double length)
 {
-    return fabs(length - 1.0) < 2.5e-7 ? 1.0f : (float)length;
+    return fabs(length - 1.0) < 1e-6 ? 1.0f : (float)length;
 }
 
 // One splitting: lengths of the columns, and the rotation of the columns made orthonormal in order.

@@ -182,6 +182,7 @@ static void rewriting_is_stable(void** state)
     ty_aggregate_destroy(again);
     // One grain sheared ever so little brings the matrices in; they come back bit for bit.
     heap->transforms[6].x = ty_mad(heap->transforms[6].x, heap->transforms[6].y, 1e-5f);
+    heap->transforms[8] = ty_affine_identity();
     heap->transforms[8].z.x = -0.0f;
     ty_aggregate_destroy(back);
     back = write_and_read(heap, "a.glb");
@@ -200,13 +201,38 @@ static void large_ids_and_single_prototype(void** state)
     ty_aggregate* heap = ty_aggregate_create(3, 1);
     heap->prototypes[0] = make_sphere(4, 3);
     heap->ids[1] = (1u << 24) + 1;
-    heap->ids[2] = TY_NONE;
     ty_aggregate* back = write_and_read(heap, "a.glb");
+    assert_memory_equal(back->ids, heap->ids, sizeof(uint32_t[3]));
+    ty_aggregate_destroy(back);
+    heap->ids[2] = TY_NONE;
+    back = write_and_read(heap, "a.glb");
     assert_memory_equal(back->ids, heap->ids, sizeof(uint32_t[3]));
     // Rigid maps stay exactly rigid.
     assert_memory_equal(back->transforms, heap->transforms, sizeof(ty_affine[3]));
     assert_null(back->recipe);
     assert_null(back->metrics);
+    ty_aggregate_destroy(heap);
+    ty_aggregate_destroy(back);
+}
+
+// Grains that are only turned keep a scale of exactly one.
+static void rigid_stays_rigid(void** state)
+{
+    (void)state;
+    ty_aggregate* heap = ty_aggregate_create(50, 1);
+    heap->prototypes[0] = make_sphere(4, 3);
+    ty_rng rng = ty_rng_make((ty_seed){4}, 0, 0);
+    for (uint32_t i = 0; i < 50; i++)
+        heap->transforms[i] = ty_affine_from_trs(random_point(&rng, 1.0f), random_rotation(&rng), (ty_vec3){1, 1, 1});
+    ty_aggregate* back = write_and_read(heap, "a.glb");
+    ty_bytes bytes;
+    ty_error error;
+    assert_int_equal(ty_file_read(in_folder("a.glb"), 1 << 26, &bytes, &error), TY_OK);
+    float ones[150];
+    for (int i = 0; i < 150; i++)
+        ones[i] = 1.0f;
+    assert_non_null(memmem(bytes.data, bytes.size, ones, sizeof ones));
+    ty_bytes_term(&bytes);
     ty_aggregate_destroy(heap);
     ty_aggregate_destroy(back);
 }
@@ -381,6 +407,12 @@ static void damaged_values(void** state)
     assert_refused(bytes.data, bytes.size, "prototype 0: vertex 5");
     ty_bytes_term(&bytes);
 
+    bytes = good_file();
+    const float ids[3] = {8.0f, 22.0f, 36.0f}, half = 22.5f;
+    poke(&bytes, ids, 12, 1, &half);
+    assert_refused(bytes.data, bytes.size, "nodes[1]._ID holds what is no whole number");
+    ty_bytes_term(&bytes);
+
     // Singular: the sheared heap's matrices are in the file as they are.
     heap->transforms[2].x = ty_add(heap->transforms[2].x, heap->transforms[2].y);
     ty_error error;
@@ -395,24 +427,72 @@ static void damaged_values(void** state)
     ty_aggregate_destroy(back);
 }
 
-static void refuse_json(const char* json, const char* reason)
+// A GLB of this JSON and a BIN chunk of 64 bytes: a triangle of the unit axes, three byte indices, zeros.
+static size_t wrap_json(const char* json, uint8_t* file, size_t capacity)
 {
-    // "{}" with a small BIN chunk: header, JSON padded with spaces, 64 bytes.
-    uint8_t file[2048] = {0};
+    static const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     size_t length = (strlen(json) + 3) & ~(size_t)3, size = 28 + length + 64;
-    assert_true(size <= sizeof file);
+    assert_true(size <= capacity);
     uint32_t words[5] = {0x46546c67u, 2, (uint32_t)size, (uint32_t)length, 0x4e4f534au}, bin[2] = {64, 0x004e4942u};
+    memset(file, 0, size);
     memcpy(file, words, sizeof words);
     memset(file + 20, ' ', length);
     memcpy(file + 20, json, strlen(json));
     memcpy(file + 20 + length, bin, sizeof bin);
-    assert_refused(file, size, reason);
+    memcpy(file + 28 + length, corners, sizeof corners);
+    memcpy(file + 28 + length + 36, (uint8_t[3]){0, 1, 2}, 3);
+    return size;
+}
+
+static void refuse_json(const char* json, const char* reason)
+{
+    uint8_t file[2048];
+    assert_refused(file, wrap_json(json, file, sizeof file), reason);
+}
+
+#define HEAD "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":64}],"
+#define VIEW                                                                                                           \
+    HEAD "\"bufferViews\":[{\"buffer\":0,\"byteLength\":64},{\"buffer\":0,\"byteLength\":64,\"byteStride\":4}],"
+#define TRIANGLE                                                                                                       \
+    VIEW "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":0,"   \
+         "\"byteOffset\":36,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"},{\"bufferView\":0,"                \
+         "\"componentType\":"                                                                                          \
+         "5121,\"count\":64,\"type\":\"SCALAR\"},{\"bufferView\":0,\"componentType\":5126,\"count\":2,\"type\":"       \
+         "\"VEC3\"}],"
+
+// As other programs write: a tree of nodes, byte indices, no normals, a node that stands for one instance.
+static void foreign_file(void** state)
+{
+    (void)state;
+    static const char json[] = TRIANGLE
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1},{\"attributes\":{\"POSITION\":0}}"
+        "]}],"
+        "\"nodes\":[{\"mesh\":0,\"scale\":[2,2,2],\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{"
+        "\"TRANSLATION\":3}}}},{\"children\":[2],\"translation\":[0,0,5]},{\"children\":[0,3],\"rotation\":"
+        "[0,0,0.70710678,0.70710678]},{\"mesh\":0,\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,7,0,0,1]}]}";
+    uint8_t file[2048];
+    ty_error error = {0};
+    ty_aggregate* back = NULL;
+    size_t size = wrap_json(json, file, sizeof file);
+    assert_int_equal(ty_file_write(in_folder("a.glb"), file, size, &error), TY_OK);
+    ty_status status = ty_aggregate_read(in_folder("a.glb"), NULL, &back, &error);
+    print_message("%s", status == TY_OK ? "" : error.text);
+    assert_int_equal(status, TY_OK);
+    assert_int_equal(back->instance_count, 3);
+    assert_int_equal(back->prototypes[0]->vertex_count, 6);
+    assert_int_equal(back->prototypes[0]->triangle_count, 2);
+    assert_int_equal(back->prototypes[0]->triangles[1][2], 5);
+    assert_true(back->prototypes[0]->normals[4].z > 0.999f);
+    // The second instance: one along x, doubled, turned to y, five up z.
+    assert_true(ty_length(ty_sub(back->transforms[1].t, (ty_vec3){0, 2, 5})) < 1e-5f);
+    assert_true(ty_length(ty_sub(back->transforms[1].x, (ty_vec3){0, 2, 0})) < 1e-5f);
+    assert_true(ty_length(ty_sub(back->transforms[2].t, (ty_vec3){0, 7, 5})) < 1e-5f);
+    ty_aggregate_destroy(back);
 }
 
 static void small_files_with_large_claims(void** state)
 {
     (void)state;
-#define HEAD "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":64}],"
     refuse_json("{\"asset\":{\"version\":\"2.0\"}}", "no instances");
     refuse_json("{\"asset\":{\"version\":\"2.0\"},\"asset\":{}}", "duplicate");
     refuse_json("{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":2147483647}]}", "buffers[0].byteLength");
@@ -431,14 +511,25 @@ static void small_files_with_large_claims(void** state)
     refuse_json(HEAD "\"nodes\":[{\"children\":[1]},{\"children\":[0]}]}", "nodes[0] is its own ancestor");
     refuse_json(HEAD "\"nodes\":[{\"children\":[1,1]},{}]}", "another parent");
     refuse_json(HEAD "\"nodes\":[{\"mesh\":0}]}", "nodes[0].mesh: the prototype is missing");
-    // 64 bytes cannot hold what a thousand nodes share.
-    refuse_json(HEAD
-                "\"bufferViews\":[{\"buffer\":0,\"byteLength\":64}],\"accessors\":[{\"bufferView\":0,\"componentType\":"
-                "5121,\"count\":64,\"type\":\"SCALAR\"},{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":"
-                "\"VEC3\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":1}}]}],\"nodes\":[{\"mesh\":0,"
-                "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"_A\":0}}}}]}",
-                "more than 64 bytes can hold");
-#undef HEAD
+    refuse_json(VIEW "\"accessors\":[{\"bufferView\":0,\"byteOffset\":60,\"componentType\":5126,\"count\":1,\"type\":"
+                     "\"VEC3\"}]}",
+                "accessors[0]: 1 elements do not fit");
+    refuse_json(VIEW "\"accessors\":[{\"bufferView\":1,\"componentType\":5126,\"count\":2,\"type\":\"VEC3\"}]}",
+                "overlap at a stride of 4");
+    refuse_json(
+        VIEW "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":2,\"type\":\"VEC3\",\"sparse\":{}}]}",
+        "sparse");
+    refuse_json(TRIANGLE "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":2}]}]}",
+                "64 corners are no whole number of triangles");
+    refuse_json(TRIANGLE "\"meshes\":[{\"primitives\":[]}]}", "meshes[0] has no primitives");
+    // Sharing must not multiply: 64 bytes cannot hold this many instances, or vertices.
+    refuse_json(TRIANGLE "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0,"
+                         "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"_A\":2}}}}]}",
+                "instances, more than 64 bytes can hold");
+#define P "{\"attributes\":{\"POSITION\":0}}"
+    refuse_json(TRIANGLE "\"meshes\":[{\"primitives\":[" P "," P "," P "," P "," P "," P "," P "," P "]}]}",
+                "24 vertices and 8 triangles, more than 64 bytes can hold");
+#undef P
 }
 
 static void every_truncation_is_refused(void** state)
@@ -545,6 +636,8 @@ int main(void)
         cmocka_unit_test(round_trip),
         cmocka_unit_test(rewriting_is_stable),
         cmocka_unit_test(large_ids_and_single_prototype),
+        cmocka_unit_test(rigid_stays_rigid),
+        cmocka_unit_test(foreign_file),
         cmocka_unit_test(unwritable),
         cmocka_unit_test(damaged_containers),
         cmocka_unit_test(damaged_json),

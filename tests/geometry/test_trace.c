@@ -368,6 +368,8 @@ static void numbering(void** state)
     const ty_world* world = s->world[TY_TRACE_FAST];
     assert_int_equal(ty_world_prototype_count(world), 5);
     assert_ptr_equal(ty_world_mesh(world, 1, 3), s->first->prototypes[1]);
+    assert_ptr_equal(ty_world_mesh(world, 1, 2), s->first->prototypes[0]);
+    assert_ptr_equal(ty_world_mesh(world, 3, 0), s->sphere);
     assert_ptr_equal(ty_world_mesh(world, 0, 0), s->first->prototypes[1]);
     assert_int_equal(ty_world_prototype(world, 0, 0), ty_world_prototype(world, 1, 1));
     assert_memory_equal(ty_world_to_world(world, 1, 7), &s->first->transforms[7], sizeof(ty_affine));
