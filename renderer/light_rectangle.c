@@ -37,7 +37,7 @@ static bool view_init(const ty_light* light, ty_vec3 p, view* v)
         return false;
     float gap_x = ty_max(fabsf(d.x) - hx, 0.0f), gap_y = ty_max(fabsf(d.y) - hy, 0.0f);
     float nearest_sqr = gap_x * gap_x + gap_y * gap_y + v->z * v->z;
-    if (nearest_sqr > 9.0f * (hx * hx + hy * hy)) // 1.5 diagonals: the solid angle hardly varies over it
+    if (nearest_sqr > 4.0f * (hx * hx + hy * hy)) // one diagonal: beyond, the solid angle hardly varies over it
         return true;
     float z_sqr = v->z * v->z;
     float n0 = -v->y0 / sqrtf(v->y0 * v->y0 + z_sqr), n1 = v->x1 / sqrtf(v->x1 * v->x1 + z_sqr);
