@@ -61,7 +61,7 @@ void ty_profile_line(ty_profile* profile, double r0, double y0, double r1, doubl
 // -1: concave, the normal points to the centre.
 void ty_profile_arc(ty_profile* profile, double r, double y, double radius, double a0, double a1, int side);
 
-// A curve in equal steps of its length, walked from t0 to t1; at gives the point at t.
+// A curve in steps of the spacing, shorter where it bends, walked from t0 to t1; at gives the point at t.
 typedef ty_profile_point ty_profile_curve_fn(const void* context, double t);
 void ty_profile_curve(ty_profile* profile, ty_profile_curve_fn* at, const void* context, double t0, double t1);
 

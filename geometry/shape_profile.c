@@ -92,21 +92,23 @@ void ty_profile_curve(ty_profile* profile, ty_profile_curve_fn* at, const void* 
     {
         samples = 2048
     };
-    double lengths[samples + 1] = {0.0};
+    const double turn = 0.2; // radians a step
+    double steps_to[samples + 1] = {0.0};
     ty_profile_point before = at(context, t0);
     for (int i = 1; i <= samples; i++)
     {
         ty_profile_point now = at(context, t0 + (t1 - t0) * i / samples);
-        lengths[i] = lengths[i - 1] + hypot(now.r - before.r, now.y - before.y);
+        double density = fmax(1.0 / profile->spacing, fabs(now.curvature) / turn);
+        steps_to[i] = steps_to[i - 1] + density * hypot(now.r - before.r, now.y - before.y);
         before = now;
     }
-    int steps = piece_steps(profile, lengths[samples], profile->spacing, 6);
+    int steps = piece_steps(profile, steps_to[samples], 1.0, 6);
     for (int i = 0, k = 0; i <= steps; i++)
     {
-        double wanted = lengths[samples] * i / steps;
-        while (k + 1 < samples && lengths[k + 1] < wanted)
+        double wanted = steps_to[samples] * i / steps;
+        while (k + 1 < samples && steps_to[k + 1] < wanted)
             k++;
-        double part = (wanted - lengths[k]) / fmax(lengths[k + 1] - lengths[k], 1e-300);
+        double part = (wanted - steps_to[k]) / fmax(steps_to[k + 1] - steps_to[k], 1e-300);
         double t = i == steps ? t1 : t0 + (t1 - t0) * (k + fmin(part, 1.0)) / samples;
         ty_profile_add(profile, at(context, t));
     }

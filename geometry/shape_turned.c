@@ -26,16 +26,19 @@ static double profile_length(const ty_profile* profile)
     return length;
 }
 
-// In proportion to the radius, but unchanged while that is within 8 %, so that most rings match, and where rings lie so
-// close that the circles' sagittas would show between different numbers. Ends and creases do not look back: both sides
-// of a crease must agree.
+// In proportion to the radius and at least 24 a few rings from the axis, but unchanged while that is within 8 %, so
+// that most rings match, and where rings lie so close that the circles' sagittas would show between different numbers.
+// Ends and creases do not look back: both sides of a crease must agree.
 static int ring_segments(const ty_profile* profile, size_t i, int previous, double largest, int divisions)
 {
     const ty_profile_point* p = &profile->points[i];
-    double wanted = fmax(6.0, floor(divisions * p->r / largest + 0.5));
+    double wanted = floor(divisions * p->r / largest + 0.5);
     if (p->crease || i == 0 || i + 1 == profile->count || profile->points[i + 1].crease)
-        return (int)wanted;
-    bool close = hypot(p->r - p[-1].r, p->y - p[-1].y) < 0.4 * profile->spacing;
+        return (int)fmax(wanted, 6.0);
+    size_t from_end = i < profile->count - 1 - i ? i : profile->count - 1 - i;
+    double least = fmin(6.0 * (double)from_end, 24.0);
+    wanted = fmax(wanted, least);
+    bool close = hypot(p->r - p[-1].r, p->y - p[-1].y) < 0.4 * profile->spacing && previous >= least;
     bool keep = p[-1].r > 0.0 && (close || (previous > 12 && fabs(wanted - previous) < 0.08 * previous));
     return keep ? previous : (int)wanted;
 }
