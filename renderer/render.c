@@ -152,7 +152,7 @@ static ty_status run_passes(render* r, const ty_render_options* options, ty_work
         done = r->pass_end - options->sample_begin;
         stats->samples_done = done;
         double seconds = ty_time_now() - r->start;
-        if (options->on_pass && !options->on_pass(options->pass_context, r->film, done, seconds))
+        if (options->on_pass && !options->on_pass(options->pass_context, r->film, r->pass_end, seconds))
             break;
         if (options->time_limit > 0.0 && seconds >= options->time_limit)
             break;

@@ -529,13 +529,13 @@ typedef struct pass_log
     bool cancel;
 } pass_log;
 
-static bool on_pass(void* context, const ty_film* film, int samples, double seconds)
+static bool on_pass(void* context, const ty_film* film, int sample_end, double seconds)
 {
     pass_log* log = context;
     assert_true(seconds >= 0.0);
     for (int x = 0; x < 70; x += 23)
-        assert_int_equal(ty_film_pixel(film, x, 20).samples, samples);
-    log->samples[log->passes++] = samples;
+        assert_int_equal(ty_film_pixel(film, x, 20).samples, sample_end - 10);
+    log->samples[log->passes++] = sample_end - 10;
     if (log->cancel && log->passes == log->stop_after)
         ty_cancel_request(15);
     return log->cancel || log->passes != log->stop_after;

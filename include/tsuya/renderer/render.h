@@ -22,10 +22,10 @@ typedef struct ty_film ty_film; // opaque
 
 typedef struct ty_film_setup
 {
-    int size[2];        // of the whole picture
-    int crop[4];        // inclusive pixels {x0, y0, x1, y1}; the data window
+    int size[2];                  // of the whole picture
+    int crop[4];                  // inclusive pixels {x0, y0, x1, y1}; the data window
     int sample_begin, sample_end; // the range this film is for
-    unsigned aovs;      // ty_aov; beauty is always there
+    unsigned aovs;                // ty_aov; beauty is always there
     bool half;
 } ty_film_setup;
 
@@ -41,28 +41,31 @@ typedef struct ty_render_stats
     double seconds;
 } ty_render_stats;
 
-// Called between passes on the calling thread, with every pixel complete up to `samples` samples. False = stop here.
-typedef bool ty_pass_fn(void* context, const ty_film* film, int samples, double seconds);
+// Called between passes on the calling thread, with every pixel complete from sample_begin up to sample_end (exclusive,
+// global indices). False = stop here.
+typedef bool ty_pass_fn(void* context, const ty_film* film, int sample_end, double seconds);
 
 typedef struct ty_render_options
 {
     int sample_begin, sample_end; // global sample indices
     ty_pass_fn* on_pass;          // NULL = none
     void* pass_context;
-    double time_limit;            // seconds, 0 = none: ends after a complete pass
+    double time_limit; // seconds, 0 = none: ends after a complete pass
     bool progress;
 } ty_render_options;
 
 // Renders into film by passes of rising length. Pure function of the scene, its seed, and the sample range.
-// Cancelled: TY_INTERRUPTED or TY_TERMINATED, the film holds complete passes (stats->samples_done).
-TY_CHECKED ty_status ty_render(const ty_scene* scene, const ty_render_options* options, ty_workers* workers, ty_film* film,
-                               ty_render_stats* stats, ty_error* error);
+// Cancelled: TY_INTERRUPTED or TY_TERMINATED; every pixel holds at least the complete passes (stats->samples_done),
+// pixels of tiles that were through hold one pass more, and each averages over its own count.
+TY_CHECKED ty_status ty_render(const ty_scene* scene, const ty_render_options* options, ty_workers* workers,
+                               ty_film* film, ty_render_stats* stats, ty_error* error);
 
-// The picture: channels and attributes as documented. partial marks an interrupted one. part keeps the exact sums, so
-// that merge can join it with others.
+// The picture: channels and attributes as documented. partial marks an interrupted one and adds a channel of sample
+// counts. part keeps the exact sums, so that merge can join it with others (not where a pass was interrupted: a
+// warning).
 typedef struct ty_film_write
 {
-    const ty_scene* scene; // for camera, hash, recipe, seed
+    const ty_scene* scene;        // for camera, hash, recipe, seed
     int sample_begin, sample_end; // what the film holds
     bool part, partial;
 } ty_film_write;
