@@ -77,3 +77,8 @@ bool ty_light_has_key(ty_light_kind kind, const char* key)
             return true;
     return false;
 }
+
+const char* ty_light_kind_name(ty_light_kind kind)
+{
+    return kinds[kind];
+}

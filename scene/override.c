@@ -2,6 +2,7 @@
 // Overrides of the command line: --set path=value into the tree, -D name=value into the variables.
 #include "loader.h"
 #include "nearest.h"
+#include "number.h"
 #include "text.h"
 #include <limits.h>
 #include <stdio.h>
@@ -192,17 +193,24 @@ void ty_override_sets(ty_loader* loader, bool early)
     }
 }
 
-// A wrong size is left for the table to report.
-static void film_size(const ty_loader* loader, int size[2])
+// False for a size that the table is going to report.
+static bool film_size(const ty_loader* loader, int size[2])
 {
     memcpy(size, ty_film_def_default().size, 2 * sizeof size[0]);
-    const ty_node* film = loader->root->kind == TY_NODE_MAP ? ty_node_get(loader->root, "film") : NULL;
-    const ty_node* list = film && film->kind == TY_NODE_MAP ? ty_node_get(film, "size") : NULL;
-    for (int i = 0; list && list->kind == TY_NODE_LIST && i < 2 && i < list->count; ++i)
+    const ty_node* film = ty_node_get(loader->root, "film");
+    const ty_node* list = film ? ty_node_get(film, "size") : NULL;
+    if (!list)
+        return !film || film->kind == TY_NODE_MAP || ty_node_is_empty(film);
+    for (int i = 0; i < 2; ++i)
     {
-        if (list->items[i]->kind == TY_NODE_SCALAR)
-            size[i] = atoi(list->items[i]->text);
+        double value = 0.0;
+        bool is_number = list->kind == TY_NODE_LIST && list->count == 2 && list->items[i]->kind == TY_NODE_SCALAR &&
+                         ty_number_parse(list->items[i]->text, &value);
+        if (!is_number || !(value >= 1.0 && value <= 65536.0) || floor(value) < value)
+            return false;
+        size[i] = (int)value;
     }
+    return true;
 }
 
 void ty_override_quick(ty_loader* loader)
@@ -211,7 +219,8 @@ void ty_override_quick(ty_loader* loader)
         return;
     int size[2];
     char text[64];
-    film_size(loader, size);
+    if (!film_size(loader, size))
+        return;
     snprintf(text, sizeof text, "film.size=[%d, %d]", (size[0] + 1) / 2, (size[1] + 1) / 2);
     apply_set(loader, text, false);
     apply_set(loader, "render.samples=16", false);

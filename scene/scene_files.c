@@ -49,8 +49,7 @@ const char* ty_files_find(ty_files* files, ty_node* node, const char* what)
     const char* found = NULL;
     for (int i = -1; i < files->search_count && !found; ++i)
     {
-        const char* beside = node->from_scene_folder ? "" : node->place.source->base;
-        const char* name = join(files, i < 0 ? beside : files->search[i], node->text);
+        const char* name = join(files, i < 0 ? node->place.source->base : files->search[i], node->text);
         ty_path_join(files->folder, name, path);
         ty_text_format(&tried, "%s%s", i < 0 ? "" : ", ", path);
         if (ty_file_exists(path))
@@ -69,7 +68,6 @@ const char* ty_files_find(ty_files* files, ty_node* node, const char* what)
     if (!found)
         return NULL;
     node->text = found;
-    node->from_scene_folder = true;
     return ty_arena_string(files->arena, path);
 }
 

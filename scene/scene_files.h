@@ -24,7 +24,8 @@ typedef struct ty_files
 } ty_files;
 
 // The path to open of the file that node names: tried beside the file that says it, then in the search folders. The
-// node's text becomes relative to the scene's folder. Missing, no regular file, outside a sandbox: reported, NULL.
+// node's text becomes relative to the scene's folder: call it once for a node. Missing, no regular file, outside a
+// sandbox: reported, NULL.
 const char* ty_files_find(ty_files* files, ty_node* node, const char* what);
 // The same, and the file's content belongs to the scene (see ty_files_add_to_hash).
 const char* ty_files_use(ty_files* files, ty_node* node, const char* what);

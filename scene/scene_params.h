@@ -39,3 +39,4 @@ const ty_param_table* ty_aggregate_asset_params(void);
 
 // Whether a key of the light table means anything for a kind of light.
 bool ty_light_has_key(ty_light_kind kind, const char* key);
+const char* ty_light_kind_name(ty_light_kind kind); // as in the file

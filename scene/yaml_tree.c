@@ -48,7 +48,6 @@ ty_node* ty_node_copy(ty_tree* tree, const ty_node* node, ty_place used, int dep
     if (!copy)
         return NULL;
     copy->text = node->text;
-    copy->from_scene_folder = node->from_scene_folder;
     for (int i = 0; i < node->count; ++i)
     {
         ty_node* item = ty_node_copy(tree, node->items[i], used, depth + 1);

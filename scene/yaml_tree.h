@@ -45,8 +45,7 @@ typedef struct ty_node ty_node;
 struct ty_node
 {
     ty_node_kind kind;
-    bool from_scene_folder; // SCALAR: a path already rewritten relative to the scene's folder
-    bool bad;               // reported already: whoever meets it says nothing more
+    bool bad; // reported already: whoever meets it says nothing more
     ty_place place;
     const char* text; // SCALAR; "" where nothing is written
     ty_node** items;  // LIST, MAP

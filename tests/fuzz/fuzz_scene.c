@@ -70,6 +70,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
     options.set_count = counts[0];
     options.variables = overrides[1];
     options.variable_count = counts[1];
+    options.quick = counts[0] > 1;
     if (counts[0] + counts[1] > 0)
         ty_free(read_scene(text, scene_size, &options));
     ty_free(text);

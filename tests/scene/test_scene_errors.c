@@ -118,7 +118,7 @@ static void lights(void** state)
     fixture_one_error("tsuya: 1\nlights: [{ type: rectangle, size: [0, 1] }]\n", 2, 36, "'size' is 0: out of range");
     fixture_one_error("tsuya: 1\nlights: [{ type: sphere, radiance: -1 }]\n", 2, 36, "out of range");
     fixture_one_error("tsuya: 1\nlights: [{ type: point, radiance: 1 }]\n", 2, 25,
-                      "'radiance' means nothing for a point light, which has: type, intensity, center");
+                      "'radiance' means nothing for a point light, which has: name, type, intensity, center");
     fixture_one_error("tsuya: 1\nlights: [{ type: directional, target: [0, 1, 0] }]\n", 2, 39, "own center");
     fixture_one_error("tsuya: 1\nlights: [{ radiance: 1 }]\n", 2, 10, "missing key 'type' of light");
     fixture_one_error("tsuya: 1\nlights: [{ type: environment, image: sky.exr }]\n", 2, 38, "no file 'sky.exr'");

@@ -100,13 +100,34 @@ static void the_last_of_two_wins(void** state)
     assert_string_equal(fixture_scene->overrides, "-D wet=.1 -D wet=.2 --set render.samples=3 --set render.samples=5");
 }
 
+static void quick_is_an_override(void** state)
+{
+    (void)state;
+    ty_scene_options options = {.check_only = true, .quick = true};
+    fixture_write("scene.yaml", "tsuya: 1\nfilm: { size: [101, 50] }\nrender: { samples: 500 }\n");
+    assert_int_equal(fixture_load(&options), TY_OK);
+    assert_int_equal(fixture_scene->film.size[0], 51);
+    assert_int_equal(fixture_scene->film.size[1], 25);
+    assert_int_equal(fixture_scene->render.samples, 16);
+    assert_string_equal(fixture_scene->overrides, "--quick");
+    fixture_write("scene.yaml", "tsuya: 1\n");
+    assert_int_equal(fixture_load(&options), TY_OK);
+    assert_int_equal(fixture_scene->film.size[0], 480);
+    // mistakes stay visible
+    fixture_write("scene.yaml", "tsuya: 1\nfilm: { size: [0, 2147483647] }\n");
+    assert_int_equal(fixture_load(&options), TY_BAD_INPUT);
+    assert_true(fixture_has("scene.yaml", 2, 16, "out of range"));
+    fixture_write("scene.yaml", "tsuya: 1\nfilm: { size: big }\n");
+    assert_int_equal(fixture_load(&options), TY_BAD_INPUT);
+    assert_true(fixture_has("scene.yaml", 2, 15, "got 'big'"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        FIXTURE_TEST(values_are_set),
-        FIXTURE_TEST(mistakes_point_into_the_argument),
-        FIXTURE_TEST(variables_are_defined),
-        FIXTURE_TEST(the_last_of_two_wins),
+        FIXTURE_TEST(values_are_set),        FIXTURE_TEST(mistakes_point_into_the_argument),
+        FIXTURE_TEST(variables_are_defined), FIXTURE_TEST(the_last_of_two_wins),
+        FIXTURE_TEST(quick_is_an_override),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

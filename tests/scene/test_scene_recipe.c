@@ -4,7 +4,7 @@
 #include <dirent.h>
 
 static const char recipe[] =
-    "tsuya: 1\nkind: aggregate\nvars: { n: 12, wet: 0.5 }\nelement: { divisions: 5, variants: 1 }\n"
+    "tsuya: 1\nkind: aggregate\nvars: { n: 12, wet: 0.5, spare: 1 }\nelement: { divisions: 5, variants: 1 }\n"
     "container: { shape: sphere, radius: 0.01 }\nfill: { count: $n }\nseed: 3\n";
 static const char scene[] =
     "tsuya: 1\nvars: { wet: 0.4 }\nassets: { heap: { aggregate: recipes/heap.yaml } }\n"
@@ -56,6 +56,7 @@ static void the_second_load_makes_nothing(void** state)
     assert_string_not_equal(fixture_scene->hash, hash);
     must_load("n=13", NULL, 1);
     assert_int_equal(fixture_scene->objects[0].instance_count, 13);
+    must_load("spare=2", NULL, 0); // the recipe knows it, even if it does not use it
     must_load(NULL, "assets.heap.aggregate.fill.count=14", 1);
     assert_int_equal(fixture_scene->objects[0].instance_count, 14);
     assert_int_equal(load("m=7", NULL), TY_BAD_INPUT);
