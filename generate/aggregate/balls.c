@@ -96,6 +96,20 @@ static void balls_start(ty_vec3 half, float bend, ty_ball* balls)
     }
 }
 
+// The balls' hull about the line between the end balls: for quick rejection.
+static float capsule_radius(const ty_ball* balls)
+{
+    ty_vec3 from = balls[0].center, axis = ty_sub(balls[TY_GRAIN_BALLS - 1].center, from);
+    float radius = 0.0f;
+    for (int i = 0; i < TY_GRAIN_BALLS; i++)
+    {
+        ty_vec3 d = ty_sub(balls[i].center, from);
+        float s = ty_clamp(ty_dot(d, axis) / ty_max(ty_length_sqr(axis), 1e-12f), 0.0f, 1.0f);
+        radius = ty_max(radius, ty_length(ty_mad(d, axis, -s)) + balls[i].radius);
+    }
+    return radius;
+}
+
 void ty_balls_fit(const ty_vec3* points, uint32_t count, ty_vec3 half_size, float bend, ty_grain* grain)
 {
     balls_start(half_size, bend, grain->balls);
@@ -111,4 +125,7 @@ void ty_balls_fit(const ty_vec3* points, uint32_t count, ty_vec3 half_size, floa
         grain->fit_max = ty_max(grain->fit_max, fabsf(d));
     }
     grain->fit_rms = (float)sqrt(sum / (double)count);
+    for (int i = 0; i < TY_GRAIN_BALLS; i++) // a hair's breadth between surfaces looks better than a cut
+        grain->balls[i].radius += 0.25f * grain->fit_rms;
+    grain->capsule = capsule_radius(grain->balls);
 }

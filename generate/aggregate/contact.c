@@ -60,8 +60,13 @@ static void grid_destroy(grid* g)
     ty_free(g->cell_of);
 }
 
-// Bodies after i whose bounding spheres come within margin, ascending. Returns how many; at most limit.
-static int grid_neighbours(const ty_pile* pile, const grid* g, int i, float margin, int* out, int limit)
+static float pair_margin(const ty_pile* pile, int a, int b)
+{
+    return 0.5f * (pile->poses[a].reach + pile->poses[b].reach);
+}
+
+// Bodies after i whose bounding spheres come within the margin, ascending. Returns how many; at most limit.
+static int grid_neighbours(const ty_pile* pile, const grid* g, int i, int* out, int limit)
 {
     int count = 0, c = g->cell_of[i];
     int x = c % g->size[0], y = c / g->size[0] % g->size[1], z = c / (g->size[0] * g->size[1]);
@@ -78,7 +83,7 @@ static int grid_neighbours(const ty_pile* pile, const grid* g, int i, float marg
                         continue;
                     const ty_body* other = &pile->bodies[j];
                     float reach = pile->def.grains[other->grain].radius * other->scale + radius;
-                    reach = reach * pile->growth + margin;
+                    reach = reach * pile->growth + pair_margin(pile, i, j);
                     if (ty_length_sqr(ty_sub(other->position, pile->bodies[i].position)) > reach * reach ||
                         count == limit)
                         continue;
@@ -123,9 +128,34 @@ static void impulses_keep(ty_pile* pile, int first, const pair* old)
     }
 }
 
+// Squared distance of the segments from p along d and from q along e (Ericson 2005, 5.1.9).
+static float segments_distance_sqr(ty_vec3 p, ty_vec3 d, ty_vec3 q, ty_vec3 e)
+{
+    ty_vec3 r = ty_sub(p, q);
+    float dd = ty_length_sqr(d), ee = ty_length_sqr(e), de = ty_dot(d, e), dr = ty_dot(d, r), er = ty_dot(e, r);
+    float area = dd * ee - de * de;
+    float s = area > 1e-6f * dd * ee ? ty_clamp((de * er - dr * ee) / area, 0.0f, 1.0f) : 0.0f;
+    float t = ty_clamp((de * s + er) / ty_max(ee, 1e-20f), 0.0f, 1.0f);
+    s = ty_clamp((de * t - dr) / ty_max(dd, 1e-20f), 0.0f, 1.0f);
+    return ty_length_sqr(ty_sub(ty_mad(r, d, s), ty_mul(e, t)));
+}
+
+static bool capsules_meet(const ty_pile* pile, int a, int b, float margin)
+{
+    const ty_ball *p = pile_balls(pile, a), *q = pile_balls(pile, b);
+    const int last = TY_GRAIN_BALLS - 1;
+    float reach = pile->def.grains[pile->bodies[a].grain].capsule * pile->bodies[a].scale;
+    reach += pile->def.grains[pile->bodies[b].grain].capsule * pile->bodies[b].scale;
+    reach = reach * pile->growth + margin;
+    return segments_distance_sqr(p[0].center, ty_sub(p[last].center, p[0].center), q[0].center,
+                                 ty_sub(q[last].center, q[0].center)) < reach * reach;
+}
+
 static void touches_find(ty_pile* pile, int a, int b, float margin)
 {
     const ty_ball *p = pile_balls(pile, a), *q = pile_balls(pile, b);
+    if (!capsules_meet(pile, a, b, margin))
+        return;
     const ty_body* other = &pile->bodies[b];
     float radius = pile->def.grains[other->grain].radius * other->scale * pile->growth + margin;
     for (int i = 0; i < TY_GRAIN_BALLS; i++)
@@ -138,17 +168,20 @@ static void touches_find(ty_pile* pile, int a, int b, float margin)
     }
 }
 
-static void pairs_find(ty_pile* pile, float margin)
+static void pairs_find(ty_pile* pile)
 {
-    grid g = grid_create(pile, 2.0f * pile->max_radius * pile->growth + margin);
+    float widest = 0.0f;
+    for (int i = 0; i < pile->count; i++)
+        widest = ty_max(widest, pile->poses[i].reach);
+    grid g = grid_create(pile, 2.0f * pile->max_radius * pile->growth + widest);
     int neighbours[512], old = 0;
     for (int i = 0; i < pile->count; i++)
     {
-        int count = grid_neighbours(pile, &g, i, margin, neighbours, 512);
+        int count = grid_neighbours(pile, &g, i, neighbours, 512);
         for (int n = 0; n < count; n++)
         {
             int j = neighbours[n], first = pile->touch_count;
-            touches_find(pile, i, j, margin);
+            touches_find(pile, i, j, pair_margin(pile, i, j));
             const pair* o = pile->old_pairs;
             while (old < pile->old_wall_first && (o[old].a < i || (o[old].a == i && o[old].b < j)))
                 old++;
@@ -160,13 +193,14 @@ static void pairs_find(ty_pile* pile, float margin)
     grid_destroy(&g);
 }
 
-static void walls_find(ty_pile* pile, float margin)
+static void walls_find(ty_pile* pile)
 {
     int walls = pile->def.container ? ty_container_wall_count(pile->def.container) : 0, old = pile->old_wall_first;
     for (int i = 0; i < pile->count; i++)
     {
         int first = pile->touch_count;
         const ty_ball* balls = pile_balls(pile, i);
+        float margin = pile->poses[i].reach;
         for (int k = 0; k < TY_GRAIN_BALLS; k++)
         {
             ty_vec3 n;
@@ -242,17 +276,21 @@ static void lists_swap(ty_pile* pile)
 
 void pile_detect(ty_pile* pile, float margin)
 {
-    lists_swap(pile);
-    pairs_find(pile, margin);
-    pile->wall_first = pile->pair_count;
-    walls_find(pile, margin);
-    pairs_color(pile);
+    const float ahead = 12.0f / pile->def.rate; // s that a body's speed is looked ahead
     for (int i = 0; i < pile->count; i++)
     {
+        const motion* m = &pile->motions[i];
+        float radius = pile->def.grains[pile->bodies[i].grain].radius;
+        float speed = ty_length(m->v) + ty_length(m->w) * radius;
+        pile->poses[i].reach = ty_min(ty_max(margin, 2.0f * ahead * speed), margin + radius);
         pile->poses[i].seen = pile->bodies[i].position;
         pile->poses[i].seen_rotation = pile->bodies[i].rotation;
     }
-    pile->margin = margin;
+    lists_swap(pile);
+    pairs_find(pile);
+    pile->wall_first = pile->pair_count;
+    walls_find(pile);
+    pairs_color(pile);
     pile->stale = false;
 }
 
@@ -270,7 +308,7 @@ bool pile_moved(const ty_pile* pile)
         float turn = ty_sqr(p.x - q.x) + ty_sqr(p.y - q.y) + ty_sqr(p.z - q.z) + ty_sqr(p.w - q.w);
         float lever = 2.1f * pile->def.grains[b->grain].radius * b->scale * pile->growth;
         float distance = ty_length(ty_sub(b->position, at->seen)) + lever * sqrtf(turn);
-        if (distance > 0.45f * pile->margin)
+        if (distance > 0.45f * at->reach)
             return true;
     }
     return false;

@@ -9,6 +9,7 @@ enum
 {
     TURNED_NODES = 224,  // in each direction of the half-plane
     GRID_NODES = 500000, // about, in all
+    FINE = 256,          // divisions of the shape that is sampled: its facets are not to be felt
 };
 
 typedef struct node
@@ -304,6 +305,7 @@ ty_status ty_container_create(const ty_container_def* def, ty_workers* workers, 
     else
     {
         c->def.shape.kind = shape_kinds[def->kind];
+        c->def.shape.divisions = def->shape.divisions > FINE ? def->shape.divisions : FINE;
         status = ty_shape_create(&c->def.shape, &mesh, error);
     }
     if (status == TY_OK)

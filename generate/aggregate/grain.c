@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rice grain: a box grid wrapped around a superellipsoid and bent, tapered, ridged and dented into a cooked grain.
+// The rice grain: a box grid wrapped around a blunt ellipsoid and bent, tapered, ridged and dented into a cooked grain.
 #include "balls.h"
 #include <string.h>
 #include <tsuya/generate/grain.h>
@@ -20,7 +20,7 @@ typedef struct shape
 
 ty_grain_def ty_grain_def_default(void)
 {
-    return (ty_grain_def){TY_GRAIN_RICE, 7.2e-3f, 3.0e-3f, 2.5e-3f, 0.06f, 16, 0.10f, 9};
+    return (ty_grain_def){TY_GRAIN_RICE, 7.2e-3f, 3.0e-3f, 2.5e-3f, 0.06f, 16, 0.15f, 9};
 }
 
 float ty_grain_bell(ty_rng* rng)
@@ -31,12 +31,12 @@ float ty_grain_bell(ty_rng* rng)
     return (sum - 2.0f) * 1.73205081f;
 }
 
-static ty_vec3 superellipsoid(const shape* s, ty_vec3 u)
+// A point of |x/a|^3 + (y/b)^2 + (z/c)^2 = 1 towards the unit vector u: a round section, blunt but rounded ends.
+static ty_vec3 blunt_ellipsoid(const shape* s, ty_vec3 u)
 {
-    const float p = TY_GRAIN_EXPONENT;
-    float k = ty_pow(fabsf(u.x), p) + ty_pow(sqrtf(u.y * u.y + u.z * u.z), p);
-    k = ty_pow(k, -1.0f / p);
-    return ty_vec3_make(s->a * u.x * k, s->b * u.y * k, s->c * u.z * k);
+    float x = ty_min(fabsf(u.x), 1.0f);
+    float k = sqrtf((1.0f + x + x * x) / (1.0f + x)); // sqrt((1 - x^3) / (1 - x^2))
+    return ty_vec3_make(s->a * u.x, s->b * u.y * k, s->c * u.z * k);
 }
 
 static shape shape_draw(const ty_grain_def* def, ty_seed seed, int variant)
@@ -49,19 +49,19 @@ static shape shape_draw(const ty_grain_def* def, ty_seed seed, int variant)
     s.c = 0.5f * def->thickness * (1.0f + 0.4f * bell[1] + 0.7f * bell[2]);
     s.c = ty_min(s.c, s.b);
     s.taper = 0.06f + 0.03f * ty_grain_bell(&rng);
-    s.bend = s.a * (0.06f + 0.035f * ty_grain_bell(&rng));
+    s.bend = s.a * (0.05f + 0.045f * ty_grain_bell(&rng));
     s.twist = 0.08f * ty_grain_bell(&rng);
     s.notch = 2.0f * s.b * def->notch * (1.0f + 0.2f * ty_grain_bell(&rng));
     for (int i = 0; i < 2; i++)
     {
-        s.ridge[i] = s.b * (i ? 0.010f : 0.016f);
+        s.ridge[i] = s.b * (i ? 0.014f : 0.026f);
         ty_sincos(ty_rng_range(&rng, 0.0f, 2.0f * TY_PI), &s.ridge_phase[i].y, &s.ridge_phase[i].x);
     }
     for (int i = 0; i < 3; i++)
     {
         ty_vec3 u = {ty_rng_range(&rng, -0.9f, 0.9f), ty_grain_bell(&rng), ty_grain_bell(&rng)};
-        s.lump_center[i] = superellipsoid(&s, ty_normalize(u));
-        s.lump[i] = s.b * 0.035f * ty_grain_bell(&rng);
+        s.lump_center[i] = blunt_ellipsoid(&s, ty_normalize(u));
+        s.lump[i] = s.b * 0.04f * ty_grain_bell(&rng);
     }
     return s;
 }
@@ -82,7 +82,7 @@ static float ridge_wave(float y, float z, int order, ty_vec2 phase)
 // u is a unit vector; the germ sits at +x, +y.
 static ty_vec3 shape_point(const shape* s, ty_vec3 u, float notch)
 {
-    ty_vec3 p = superellipsoid(s, u);
+    ty_vec3 p = blunt_ellipsoid(s, u);
     float rho = sqrtf(u.y * u.y + u.z * u.z), radial = 0.0f;
     if (rho > 0.0f)
     {
@@ -92,8 +92,8 @@ static ty_vec3 shape_point(const shape* s, ty_vec3 u, float notch)
     }
     for (int i = 0; i < 3; i++)
         radial += s->lump[i] * ty_exp(-ty_length_sqr(ty_sub(p, s->lump_center[i])) / (2.0f * s->b * s->b));
-    ty_vec3 germ = superellipsoid(s, ty_vec3_make(0.82f, 0.5723635f, 0.0f));
-    float width = 0.46f * s->b, dent = notch * ty_exp(-ty_length_sqr(ty_sub(p, germ)) / (2.0f * width * width));
+    ty_vec3 germ = blunt_ellipsoid(s, ty_vec3_make(0.82f, 0.5723635f, 0.0f));
+    float width = 0.44f * s->b, dent = notch * ty_exp(-ty_length_sqr(ty_sub(p, germ)) / (2.0f * width * width));
     p = ty_mad(p, u, radial);
     p = ty_mad(p, ty_normalize(ty_vec3_make(germ.x / ty_sqr(s->a), germ.y / ty_sqr(s->b), 0.0f)), -dent);
     float x = p.x / s->a, section = 1.0f - s->taper * x, sine, cosine;

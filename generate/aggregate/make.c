@@ -106,7 +106,7 @@ static void grains_drop(kit* k, int count)
     float length = 1.1f * k->recipe->element.length * (1.0f + 2.0f * k->recipe->element.variation);
     ty_bounds interior = ty_container_interior(k->container);
     ty_vec3 center = ty_mul(ty_add(interior.low, interior.high), 0.5f);
-    float radius = 0.72f * ty_min(k->top.radius_x, k->top.radius_z), above = 0.6f * length;
+    float radius = 0.62f * ty_min(k->top.radius_x, k->top.radius_z), above = 0.6f * length;
     for (int i = 0; i < ty_pile_count(k->pile); i++) // over all that is there already
     {
         ty_vec3 p = ty_pile_bodies(k->pile)[i].position;
@@ -181,11 +181,25 @@ static ty_status pile_rest(kit* k, ty_error* error)
                         k->recipe->fill.count, ty_pile_count(k->pile));
 }
 
+// A push of about the speed of a fall through its width, for grains that are wedged where none can be dropped.
+static void floating_stir(kit* k, ty_body* bodies, const bool* held)
+{
+    float speed = sqrtf(2.0f * 9.81f * k->recipe->element.width);
+    for (int i = 0; i < ty_pile_count(k->pile); i++)
+    {
+        ty_vec3 push;
+        push.x = speed * ty_grain_bell(&k->rng);
+        push.y = speed * ty_grain_bell(&k->rng);
+        push.z = speed * ty_grain_bell(&k->rng);
+        if (!held[i])
+            bodies[i].velocity = push;
+    }
+    ty_pile_set_bodies(k->pile, bodies);
+}
+
 // Takes out what floats in a vessel that one can drop new grains into.
 static void floating_replace(kit* k, bool* held)
 {
-    if (!ty_container_is_open(k->container))
-        return;
     int count = ty_pile_count(k->pile);
     for (int i = 0; i < count; i++)
         held[i] = !held[i];
@@ -194,7 +208,7 @@ static void floating_replace(kit* k, bool* held)
     grains_drop(k, count - ty_pile_count(k->pile));
 }
 
-// Polishes a copy; where a grain floats after that, the unpolished pile settles on with that grain replaced.
+// Polishes a copy; where a grain floats after that, the unpolished pile settles on with that grain replaced or stirred.
 static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
 {
     int count = k->recipe->fill.count;
@@ -220,7 +234,10 @@ static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
         if (metrics->floating == 0 || round == ROUNDS - 1)
             break;
         ty_pile_set_bodies(k->pile, kept);
-        floating_replace(k, held);
+        if (ty_container_is_open(k->container))
+            floating_replace(k, held);
+        else
+            floating_stir(k, kept, held);
     }
     ty_free(kept);
     ty_free(held);

@@ -14,7 +14,6 @@ ty_pile* ty_pile_create(const ty_pile_def* def)
     ty_pile* pile = TY_ALLOC(ty_pile, 1);
     pile->def = *def;
     pile->growth = 1.0f;
-    pile->margin = PILE_MARGIN;
     pile->stale = true;
     for (int i = 0; i < def->grain_count; i++)
     {

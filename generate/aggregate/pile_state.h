@@ -10,7 +10,7 @@ enum
     PILE_LID = 31, // wall number of the lid during a fill
 };
 
-#define PILE_MARGIN 0.3e-3f // m, candidates reach this far; new ones when a ball moved .45 of it
+#define PILE_MARGIN 0.3e-3f // m, least reach of a body for candidates; new ones when a ball moved .45 of its reach
 
 // What the solver needs of a body, one cache line.
 typedef struct motion
@@ -57,6 +57,7 @@ typedef struct pose
     ty_affine frame; // body to world, with the size
     ty_vec3 seen;    // position and rotation when candidates were last found
     ty_quat seen_rotation;
+    float reach; // m, candidates lie within the mean of two bodies' reaches; faster bodies reach farther
 } pose;
 
 struct ty_pile
@@ -84,7 +85,6 @@ struct ty_pile
     int order_capacity;
     int color_first[PILE_COLORS + 2];
     int color_count;
-    float margin;
     bool stale;     // candidates must be found again
     bool may_sleep; // bodies at rest are left out while a few still move
     float time;     // s since the start
@@ -110,7 +110,7 @@ void pile_reserve(void** array, int* capacity, int needed, size_t size);
 
 // contact.c
 void pile_detect(ty_pile* pile, float margin); // candidates within margin, in id order, kept impulses, colours
-bool pile_moved(const ty_pile* pile);          // a ball may have moved more than .45 of the margin
+bool pile_moved(const ty_pile* pile);          // a ball may have moved more than .45 of its body's reach
 
 // Runs fn over the pairs of each colour in turn, then over the walls. Pairs of one colour share no body.
 typedef void pile_pair_fn(ty_pile* pile, pair* p);

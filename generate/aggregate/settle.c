@@ -320,23 +320,44 @@ static int lost_remove(ty_pile* pile)
     return lost;
 }
 
-static bool all_wake(ty_pile* pile)
+static int sleepers_count(const ty_pile* pile)
 {
-    bool any = false;
+    int count = 0;
     for (int i = 0; i < pile->count; i++)
-        if (pile->motions[i].asleep)
-        {
-            body_wake(pile, i);
-            any = true;
-        }
-    return any;
+        count += pile->motions[i].asleep;
+    return count;
 }
 
-// While few bodies move the others sleep; rest is found with all of them awake.
+static void all_wake(ty_pile* pile)
+{
+    for (int i = 0; i < pile->count; i++)
+        if (pile->motions[i].asleep)
+            body_wake(pile, i);
+}
+
+// One check: counts calm ones in a row. While few bodies move the others may sleep; when all do, or none moves for
+// long, everybody wakes and the count begins again: rest is found with all of them awake.
+static void rest_check(ty_pile* pile, bool lost, bool may_sleep, int* calm)
+{
+    float rms, largest;
+    pile_speeds(pile, &rms, &largest);
+    bool is_calm = rms < QUIET_RMS && largest < QUIET_MAX && !lost && pile->time > QUIET_AFTER;
+    int sleepers = sleepers_count(pile);
+    *calm = is_calm ? *calm + 1 : 0;
+    if (sleepers > 0 && (sleepers == pile->count || *calm >= QUIET_CHECKS))
+    {
+        all_wake(pile);
+        pile->may_sleep = false;
+        *calm = 0;
+    }
+    else if (!is_calm)
+        pile->may_sleep = may_sleep;
+}
+
 ty_pile_end ty_pile_settle(ty_pile* pile, float max_seconds, ty_workers* workers, int* lost)
 {
-    int interval = (int)(CHECK_TIME * pile->def.rate + 0.5f), quiet = 0, steps = (int)(max_seconds * pile->def.rate);
-    int lost_count = 0;
+    int interval = (int)(CHECK_TIME * pile->def.rate + 0.5f), steps = (int)(max_seconds * pile->def.rate);
+    int lost_count = 0, calm = 0;
     ty_pile_end end = TY_PILE_TIME;
     for (int k = 1; k <= steps && end == TY_PILE_TIME; k++)
     {
@@ -345,14 +366,10 @@ ty_pile_end ty_pile_settle(ty_pile* pile, float max_seconds, ty_workers* workers
             continue;
         int out = lost_remove(pile);
         lost_count += out;
-        float rms, largest;
-        pile_speeds(pile, &rms, &largest);
-        bool calm = rms < QUIET_RMS && largest < QUIET_MAX && out == 0 && pile->time > QUIET_AFTER;
-        quiet = calm && !all_wake(pile) ? quiet + 1 : 0;
-        pile->may_sleep = !calm && (float)k > SLEEP_AFTER * pile->def.rate;
+        rest_check(pile, out > 0, (float)k > SLEEP_AFTER * pile->def.rate, &calm);
         if (ty_cancel_requested())
             end = TY_PILE_CANCELED;
-        else if (quiet >= QUIET_CHECKS)
+        else if (calm >= QUIET_CHECKS)
             end = TY_PILE_REST;
     }
     pile->may_sleep = false;

@@ -8,7 +8,7 @@
 
 enum
 {
-    TY_GRAIN_BALLS = 8, // per grain: two rows, so that an elliptical section is met
+    TY_GRAIN_BALLS = 10, // per grain: two rows, so that an elliptical section is met
     TY_GRAIN_MAX_VARIANTS = 64,
 };
 
@@ -46,17 +46,15 @@ typedef struct ty_grain
     float volume;             // m^3, of the mesh
     float inverse_inertia[6]; // per unit mass, 1/m^2: xx yy zz xy xz yz, body frame
     float radius;             // m, about the origin, of mesh and balls
+    float capsule;            // m, all balls lie this near to the line from the first ball's centre to the last one's
     float width;              // m, of this variant
     float fit_rms, fit_max;   // m, distance of the mesh without its dent from the union of the balls
 } ty_grain;
 
-// A superellipsoid |x/a|^p + ((y/b)^2 + (z/c)^2)^(p/2) = 1 with taper, bend, twist, longitudinal ridges and the germ's
+// The blunt ellipsoid |x/a|^3 + (y/b)^2 + (z/c)^2 = 1 with taper, bend, twist, longitudinal ridges and the germ's
 // dent; each variant of a seed differs. The caller frees with ty_grain_term. On failure *out is zeroed.
 TY_CHECKED ty_status ty_grain_init(const ty_grain_def* def, ty_seed seed, int variant, ty_grain* out, ty_error* error);
 void ty_grain_term(ty_grain* grain); // a zeroed one is allowed
-
-// Exponent p of the surface above: a little fuller at the ends than an ellipsoid.
-#define TY_GRAIN_EXPONENT 2.4f
 
 // A bell-shaped number, mean 0 and variance 1, within +-2 sqrt(3): the sum of four uniform ones.
 float ty_grain_bell(ty_rng* rng);
