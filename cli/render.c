@@ -223,7 +223,9 @@ static ty_status plan(const ty_arguments* arguments, const ty_scene* scene, rend
     job->setup.sample_begin = job->render.sample_begin = range[0];
     job->setup.sample_end = job->render.sample_end = range[1];
     job->render.progress = true;
-    job->write = (ty_film_write){.scene = scene, .sample_begin = range[0], .sample_end = range[1]};
+    job->write = (ty_film_write){.scene = scene, .sample_begin = range[0],
+                               .sample_end = range[1],
+                               .part = range[0] != 0 || range[1] != scene->render.samples};
     return TY_OK;
 }
 
@@ -247,6 +249,7 @@ static bool on_pass(void* context, const ty_film* film, int samples, double seco
     ty_film_write write = job->write;
     write.sample_end = samples;
     write.partial = true;
+    write.part = false;
     ty_exr* exr;
     ty_error error;
     ty_status status = ty_film_to_exr(film, &write, &exr, &error);

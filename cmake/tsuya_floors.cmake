@@ -18,7 +18,7 @@ set(tsuya_c_warnings -Wstrict-prototypes -Wmissing-prototypes)
 
 function(tsuya_compile_options target)
     target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/include)
-    target_compile_definitions(${target} PRIVATE _GNU_SOURCE)
+    target_compile_definitions(${target} PRIVATE _GNU_SOURCE TSUYA_VERSION="${PROJECT_VERSION}")
     target_compile_options(${target} PRIVATE ${tsuya_warnings} $<$<COMPILE_LANGUAGE:C>:${tsuya_c_warnings}>
                                              -ffp-contract=off -fno-math-errno -fvisibility=hidden)
     if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")

@@ -116,3 +116,4 @@ void ty_film_add_range(int sample_begin, int sample_end, ty_exr* exr); // "tsuya
 #define TY_KEY_SAMPLES "tsuya/samples"
 #define TY_KEY_PARTIAL "tsuya/partial"
 #define TY_KEY_PART "tsuya/part"
+#define TY_KEY_PLANNED "tsuya/samplesPlanned" // of the scene: tells a part from a picture

@@ -6,10 +6,6 @@
 #include <stdio.h>
 #include <tsuya/base/log.h>
 
-#ifndef TSUYA_VERSION
-#define TSUYA_VERSION "0.1.0"
-#endif
-
 #define HALF_MAX 65504.0f
 
 typedef enum field
@@ -159,6 +155,7 @@ static void add_scene_attributes(const ty_film* film, const ty_scene* scene, ty_
     ty_exr_add_string(exr, "tsuya/seed", seed);
     ty_exr_add_string(exr, "tsuya/integrator", integrator_name(scene->render.integrator));
     ty_exr_add_string(exr, "tsuya/recipe", scene->recipe ? scene->recipe : "");
+    ty_exr_add_int(exr, TY_KEY_PLANNED, scene->render.samples);
 }
 
 static bool is_uniform(const ty_film* film, int samples)

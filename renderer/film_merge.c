@@ -8,7 +8,7 @@
 // What every part must share, in the order in which a picture carries it.
 static const char* const carried[] = {"chromaticities", "worldToCamera",    "worldToNDC",
                                       "tsuya/version",  "tsuya/hash",       "tsuya/overrides",
-                                      "tsuya/seed",     "tsuya/integrator", "tsuya/recipe"};
+                                      "tsuya/seed",     "tsuya/integrator", "tsuya/recipe", TY_KEY_PLANNED};
 
 enum
 {
@@ -101,12 +101,12 @@ static int by_begin(const void* a, const void* b)
     return ((const part*)a)->sample_begin - ((const part*)b)->sample_begin;
 }
 
-// The ranges must tile 0..N: sorts them by their begin.
+// The ranges must follow each other without a gap: sorts them by their begin.
 static ty_status check_ranges(part* parts, int count, ty_error* error)
 {
     qsort(parts, (size_t)count, sizeof *parts, by_begin);
-    int done = 0;
-    for (int i = 0; i < count; ++i)
+    int done = parts[0].sample_end;
+    for (int i = 1; i < count; ++i)
     {
         if (parts[i].sample_begin > done)
             return ty_error_set(error, TY_BAD_FILE, "samples %d-%d are missing: no part holds them", done,
@@ -114,19 +114,23 @@ static ty_status check_ranges(part* parts, int count, ty_error* error)
         if (parts[i].sample_begin < done)
             return ty_error_set_at(error, TY_BAD_FILE, parts[i].path, 0, 0, "samples %d-%d are in %s as well",
                                    parts[i].sample_begin, (done < parts[i].sample_end ? done : parts[i].sample_end) - 1,
-                                   i ? parts[i - 1].path : "another part");
+                                   parts[i - 1].path);
         done = parts[i].sample_end;
     }
     return TY_OK;
 }
 
-static ty_status write_whole(const ty_exr* first, const ty_film* sum, int samples, const char* output, ty_error* error)
+// All the samples that the scene asks for make a picture; fewer make a larger part.
+static ty_status write_joined(const ty_exr* first, const ty_film* sum, int begin, int end, const char* output,
+                              ty_error* error)
 {
     ty_exr* exr = ty_exr_create(first->data_window, first->display_window);
     ty_film_add_channels(sum, false, exr);
     for (int i = 0; i < CARRIED_COUNT; ++i)
         copy_attribute(ty_exr_find_attribute(first, carried[i]), exr);
-    ty_film_add_range(0, samples, exr);
+    ty_film_add_range(begin, end, exr);
+    if (begin != 0 || end != ty_exr_find_attribute(first, TY_KEY_PLANNED)->integer[0])
+        ty_film_add_part_channels(sum, exr);
     ty_status status = ty_exr_write(output, exr, error);
     ty_exr_destroy(exr);
     return status;
@@ -164,7 +168,7 @@ ty_status ty_film_merge(const char* const* paths, int count, const char* output,
     if (!status)
         status = check_ranges(parts, count, error);
     if (!status)
-        status = write_whole(first, sum, parts[count - 1].sample_end, output, error);
+        status = write_joined(first, sum, parts[0].sample_begin, parts[count - 1].sample_end, output, error);
     ty_exr_destroy(first);
     ty_film_destroy(sum);
     ty_free(parts);

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Runs one test script in an empty folder: run.sh SCRIPT PROGRAM FOLDER. Scripts source nothing; these are their words.
 set -u
-script=$1
+script=$(realpath "$1")
 tsuya=$(realpath "$2")
 rm -rf "$3"
 mkdir -p "$3"

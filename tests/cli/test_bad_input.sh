@@ -146,7 +146,7 @@ expect 2 "$tsuya" render scene.yaml -o out.png
 expect 3 "$tsuya" render scene.yaml --set render.sampels=3
 says "did you mean"
 expect 3 "$tsuya" render scene.yaml -D wetness=3
-expect 3 "$tsuya" render missing.yaml
+expect 4 "$tsuya" render missing.yaml
 says "missing.yaml"
 expect 0 "$tsuya" --help
 expect 0 "$tsuya" render --help

@@ -205,6 +205,7 @@ static ty_scene scene_make(void)
     ty_scene scene = {.recipe = "tsuya: 1\ncamera: {}\n", .overrides = ""};
     scene.camera = (ty_camera_def){.position = {0, 0, 1}, .up = {0, 1, 0}, .vfov = 1.0f, .film_height = 0.024f};
     scene.render.seed.value = 12345678901234567890ull;
+    scene.render.samples = SAMPLES;
     strcpy(scene.hash, "0123456789abcdef0123456789abcdef");
     return scene;
 }
@@ -286,6 +287,23 @@ static void test_merge_gives_the_same_bytes(void** state)
             fail_msg("%s", error.text);
         assert_same_files(whole, merged);
     }
+}
+
+// Less than the scene asks for, and not from its beginning: the joined file is a part itself, and joins again.
+static void test_merge_of_some_parts_is_a_part(void** state)
+{
+    ty_scene scene = scene_make();
+    const char *a = path_of(state, "a.exr"), *b = path_of(state, "b.exr"), *c = path_of(state, "c.exr");
+    const char *bc = path_of(state, "bc.exr"), *joined = path_of(state, "joined.exr"), *whole = path_of(state, "w.exr");
+    write_range(&scene, 0, 32, TY_AOV_ALL, true, a);
+    write_range(&scene, 32, 100, TY_AOV_ALL, true, b);
+    write_range(&scene, 100, SAMPLES, TY_AOV_ALL, true, c);
+    write_range(&scene, 32, SAMPLES, TY_AOV_ALL, true, bc);
+    assert_int_equal(ty_film_merge((const char*[]){c, b}, 2, joined, NULL), TY_OK);
+    assert_same_files(bc, joined);
+    write_range(&scene, 0, SAMPLES, TY_AOV_ALL, false, whole);
+    assert_int_equal(ty_film_merge((const char*[]){joined, a}, 2, c, NULL), TY_OK);
+    assert_same_files(whole, c);
 }
 
 static void assert_merge_fails(const char* const* parts, int count, void** state, const char* expected)
@@ -423,6 +441,7 @@ int main(void)
         cmocka_unit_test(test_saturation_fits_the_longest_run),
         cmocka_unit_test(test_setup_is_checked),
         cmocka_unit_test_setup_teardown(test_merge_gives_the_same_bytes, place_make, place_remove),
+        cmocka_unit_test_setup_teardown(test_merge_of_some_parts_is_a_part, place_make, place_remove),
         cmocka_unit_test_setup_teardown(test_merge_refuses_what_does_not_fit, place_make, place_remove),
         cmocka_unit_test_setup_teardown(test_merge_refuses_damaged_parts, place_make, place_remove),
         cmocka_unit_test_setup_teardown(test_attributes_and_channels, place_make, place_remove),
