@@ -284,6 +284,37 @@ static void test_open_mesh_has_a_field(void** state)
     stage_term(&s);
 }
 
+static void test_probe_on_a_plane(void** state)
+{
+    (void)state;
+    // No curvature: half the light leaves within sqrt(3) s0, s0 = (4/3) l, of where it entered.
+    stage s;
+    ty_shape_def shape = shape_of(TY_SHAPE_PLANE, 1e-2f, 0, 1e-2f);
+    stage_init_one(&s, &shape);
+    ty_cdrf_def d = white_cdrf(TY_CDRF_PROBE, TY_CDRF_POISSON, 0.1e-3f);
+    ty_material* m = cdrf(&d);
+    ty_surface_point p = seen(&s, ty_vec3_make(1e-3f, 0.01f, 1e-5f), ty_vec3_make(0, -1, 0));
+    ty_rng rng = ty_rng_make((ty_seed){8}, 0, 0);
+    double within = 0, beside = 0, n = 20000;
+    for (int i = 0; i < (int)n; i++)
+    {
+        ty_bsdf b;
+        ty_rgb weight;
+        float u[4];
+        random4(&rng, u);
+        ty_material_prepare(m, &s.context, &p, p.ng, &b);
+        assert_true(ty_bsdf_resolve(&b, &s.context, u, &rng, &weight));
+        ty_vec3 apart = ty_sub(b.point.position, p.position);
+        within += (double)ty_length(apart) < sqrt(3) * 4 / 3 * 0.1e-3;
+        beside += apart.x > 0;
+        assert_near(b.frame.n.y, 1.0, 1e-6);
+    }
+    assert_near(within / n, 0.5, 0.015);
+    assert_near(beside / n, 0.5, 0.015);
+    ty_material_destroy(m);
+    stage_term(&s);
+}
+
 static void test_depth_field_without_memory(void** state)
 {
     (void)state;
@@ -391,6 +422,7 @@ int main(void)
         cmocka_unit_test(test_local_curvature_has_a_direction),
         cmocka_unit_test(test_slab_transmits),
         cmocka_unit_test(test_open_mesh_has_a_field),
+        cmocka_unit_test(test_probe_on_a_plane),
         cmocka_unit_test(test_depth_field_without_memory),
         cmocka_unit_test(test_spawned_rays),
         cmocka_unit_test(test_glass_ball_vanishes),
