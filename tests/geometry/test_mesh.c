@@ -83,7 +83,7 @@ static void test_validate_wants_area(void** state)
         mesh->positions[i].x = mesh->positions[i].y = 0.5f;
     assert_invalid(mesh, "area");
     for (uint32_t i = 0; i < 8; i++)
-        mesh->positions[i] = ty_vec3_make(i & 1 ? 1e30f : 0.0f, i & 2 ? 1e30f : 0.0f, 0.0f);
+        mesh->positions[i] = ty_vec3_make(i & 1 ? 3e38f : -3e38f, i & 2 ? 3e38f : -3e38f, 0.0f);
     assert_int_equal(ty_mesh_validate(mesh, "large", NULL), TY_OK);
     mesh->triangle_count = 0;
     assert_invalid(mesh, "triangles");
@@ -188,6 +188,27 @@ static void test_normals_agree_over_welds(void** state)
     ty_mesh_destroy(mesh);
 }
 
+// At pi even what only touches at a point is smooth; below, it is not.
+static void test_touching_fans_share_a_normal_at_pi_only(void** state)
+{
+    (void)state;
+    for (int sharp = 0; sharp < 2; sharp++)
+    {
+        ty_mesh* mesh = ty_mesh_create(5, 2);
+        mesh->positions[1] = ty_vec3_make(1.0f, 0.0f, 0.0f);
+        mesh->positions[2] = ty_vec3_make(0.0f, 1.0f, 0.0f);
+        mesh->positions[3] = ty_vec3_make(0.0f, -1.0f, 0.0f);
+        mesh->positions[4] = ty_vec3_make(0.0f, 0.0f, -1.0f);
+        const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 3, 4}};
+        memcpy(mesh->triangles, triangles, sizeof(triangles));
+        ty_mesh_compute_normals(mesh, sharp ? 3.0f : TY_PI);
+        assert_int_equal(mesh->vertex_count, sharp ? 6 : 5);
+        ty_vec3 expected = sharp ? ty_vec3_make(0, 0, 1) : ty_normalize(ty_vec3_make(1, 0, 1));
+        assert_true(ty_dot(mesh->normals[0], expected) > 0.999999f);
+        ty_mesh_destroy(mesh);
+    }
+}
+
 static void test_unused_vertices_get_unit_normals(void** state)
 {
     (void)state;
@@ -280,11 +301,12 @@ static void test_fine_balls_are_convex_and_dents_are_not(void** state)
     {
         ty_mesh* mesh = make_ball(divisions[i], ty_vec3_make(0.0035f, 0.0013f, 0.0016f));
         assert_true(analyse(mesh).convex);
-        // One vertex half a percent in.
+        // One vertex pressed in by little more than makes its surroundings hollow.
+        const float pressed[] = {0.8f, 0.993f, 1.0f - 1.2e-4f};
         uint32_t w = mesh->welds[mesh->vertex_count / 3];
         for (uint32_t v = 0; v < mesh->vertex_count; v++)
             if (mesh->welds[v] == w)
-                mesh->positions[v] = ty_mul(mesh->positions[v], i == 0 ? 0.8f : 0.995f);
+                mesh->positions[v] = ty_mul(mesh->positions[v], pressed[i]);
         assert_true(analyse(mesh).closed && !analyse(mesh).convex);
         ty_mesh_destroy(mesh);
     }
@@ -385,6 +407,7 @@ int main(void)
         cmocka_unit_test(test_sharp_edges_are_split),
         cmocka_unit_test(test_smooth_normals_do_not_depend_on_the_cut),
         cmocka_unit_test(test_normals_agree_over_welds),
+        cmocka_unit_test(test_touching_fans_share_a_normal_at_pi_only),
         cmocka_unit_test(test_unused_vertices_get_unit_normals),
         cmocka_unit_test(test_cube_topology),
         cmocka_unit_test(test_open_flipped_and_inside_out_are_not_closed),

@@ -255,9 +255,11 @@ static void test_bowl_curvature_agrees_with_the_estimate(void** state)
     ty_mesh* estimate = ty_mesh_copy(mesh);
     ty_mesh_compute_curvature(estimate, 0);
     int concave = 0, convex = 0;
+    float hollow = 0.0f;
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
     {
         ty_vec3 p = mesh->positions[i];
+        hollow = ty_min(hollow, mesh->curvature_2[i]);
         if (p.y < 0.2f * def.height || p.y > 0.9f * def.height)
             continue;
         assert_float_equal(mesh->curvature_1[i], estimate->curvature_1[i], 1.2f);
@@ -266,6 +268,7 @@ static void test_bowl_curvature_agrees_with_the_estimate(void** state)
         convex += mesh->curvature_2[i] > 1.0f;
     }
     assert_true(concave > 1000 && convex > 1000);
+    assert_true(hollow < -2.0f / def.foot_height); // the fillets of the foot
     ty_mesh_destroy(estimate);
     ty_mesh_destroy(mesh);
 }
@@ -292,6 +295,56 @@ static void test_flat_parts_are_flat(void** state)
         sharpest = ty_max(sharpest, mesh->curvature_2[i]);
     }
     assert_float_equal(sharpest * def.rounding, 1.0f, 1e-5f);
+    ty_mesh_destroy(mesh);
+}
+
+// Where a flat and a round part meet, the flat one holds: else the linear interpolation would bend the flat one.
+static void test_borders_of_round_parts(void** state)
+{
+    (void)state;
+    ty_shape_def def = shape_of(TY_SHAPE_CYLINDER);
+    def.rounding = 0.006f;
+    ty_mesh* mesh = make(&def);
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+    {
+        float n = fabsf(mesh->normals[i].y), k1 = mesh->curvature_1[i], k2 = mesh->curvature_2[i];
+        if (n > 0.9999f)
+            assert_true(fabsf(k1) < 1e-3f && fabsf(k2) < 1e-3f);
+        else if (n < 1e-4f)
+            assert_true(fabsf(k1 * def.radius - 1.0f) < 1e-4f && fabsf(k2) < 1e-3f);
+        else
+            assert_true(fabsf(k1 * def.rounding - 1.0f) < 1e-4f && k2 > 0.0f);
+    }
+    ty_mesh_destroy(mesh);
+    def = shape_of(TY_SHAPE_SWEEP);
+    mesh = make(&def);
+    int bent = 0;
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+    {
+        bool inside = mesh->normals[i].y > 0.001f && mesh->normals[i].z > 0.001f;
+        assert_true(mesh->curvature_1[i] == 0.0f);
+        assert_float_equal(mesh->curvature_2[i] * def.rounding, inside ? -1.0f : 0.0f, 1e-6f);
+        bent += inside;
+    }
+    assert_true(bent > 20);
+    ty_mesh_destroy(mesh);
+}
+
+static void test_sphere_uv_is_longitude_and_latitude(void** state)
+{
+    (void)state;
+    ty_shape_def def = shape_of(TY_SHAPE_SPHERE);
+    ty_mesh* mesh = make(&def);
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+    {
+        ty_vec3 n = mesh->normals[i];
+        ty_vec2 uv = mesh->uvs[i];
+        float s, c, height = sqrtf(n.x * n.x + n.z * n.z);
+        assert_float_equal(-ty_cos(TY_PI * uv.y), n.y, 1e-5f);
+        ty_sincos(2.0f * TY_PI * uv.x, &s, &c);
+        if (height > 1e-4f)
+            assert_true(fabsf(n.x + height * s) < 1e-5f && fabsf(n.z + height * c) < 1e-5f);
+    }
     ty_mesh_destroy(mesh);
 }
 
@@ -658,6 +711,8 @@ int main(void)
         cmocka_unit_test(test_curvature_is_exact_where_there_is_a_formula),
         cmocka_unit_test(test_bowl_curvature_agrees_with_the_estimate),
         cmocka_unit_test(test_flat_parts_are_flat),
+        cmocka_unit_test(test_borders_of_round_parts),
+        cmocka_unit_test(test_sphere_uv_is_longitude_and_latitude),
         cmocka_unit_test(test_bowl_stands_and_has_its_sizes),
         cmocka_unit_test(test_bowl_interior_agrees_with_its_mesh),
         cmocka_unit_test(test_bowl_is_open_above),

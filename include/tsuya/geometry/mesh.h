@@ -53,6 +53,7 @@ void ty_mesh_compute_welds(ty_mesh* mesh); // exact equality of positions
 void ty_mesh_compute_normals(ty_mesh* mesh, float crease);
 // Principal curvatures and direction per vertex (Rusinkiewicz 2004 over welded vertices), then `smoothing` Gaussian passes.
 void ty_mesh_compute_curvature(ty_mesh* mesh, int smoothing);
+// Positions, normals, curvature (exactly) and bounds; triangles are turned round under a mirror. Welds stay as they are.
 void ty_mesh_transform(ty_mesh* mesh, const ty_affine* m);
 void ty_mesh_analyse(const ty_mesh* mesh, ty_mesh_topology* out); // needs welds
 
