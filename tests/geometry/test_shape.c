@@ -323,7 +323,7 @@ static void test_borders_of_round_parts(void** state)
     {
         bool inside = mesh->normals[i].y > 0.001f && mesh->normals[i].z > 0.001f;
         assert_true(mesh->curvature_1[i] == 0.0f);
-        assert_float_equal(mesh->curvature_2[i] * def.rounding, inside ? -1.0f : 0.0f, 1e-6f);
+        assert_float_equal(mesh->curvature_2[i] * def.rounding, (inside ? -1.0f : 0.0f), 1e-6f);
         bent += inside;
     }
     assert_true(bent > 20);
