@@ -45,13 +45,94 @@ static bool survives(const ty_render_def* def, path* p, float* u)
     return true;
 }
 
-// Light at a surface and the next ray from it. False = the path ends.
-static bool scatter(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf* bsdf, path* p, ty_rgb* radiance,
+static void add(ty_rgb* radiance, ty_rgb beta, ty_rgb light)
+{
+    *radiance = ty_rgb_add(*radiance, ty_rgb_mul(beta, light));
+}
+
+// The way on after a sampled direction. False = the path ends.
+static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, float u, path* p)
+{
+    p->beta = ty_rgb_mul(p->beta, sample->weight);
+    if (!survives(&in->scene->render, p, &u))
+        return false;
+    p->view = (ty_light_view){.from = bsdf->point.position, .pdf = sample->pdf, .full = sample->delta};
+    ty_bsdf_spawn(bsdf, sample->wi, u, &p->ray);
+    return true;
+}
+
+// Light at a surface and the next ray from it. u: direction 2, lobe, roulette and start; light's surface 2, choice,
+// start of the shadow ray. False = the path ends.
+static bool scatter(const ty_integrator* in, const ty_bsdf* bsdf, const float u[8], path* p, ty_rgb* radiance,
                     ty_counters* counters)
 {
+    add(radiance, p->beta, direct_light(in, bsdf, u + 4, counters));
+    ty_bsdf_sample sample;
+    return ty_bsdf_sample_wi(bsdf, u[2], (ty_vec2){u[0], u[1]}, &sample) && go_on(in, bsdf, &sample, u[3], p);
+}
+
+// What the sampled direction of a lobe meets of the lights, the scene between.
+static ty_rgb light_along(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, float u,
+                          ty_counters* counters)
+{
+    ty_light_view view = {.from = bsdf->point.position, .pdf = sample->pdf, .full = sample->delta};
+    ty_ray ray;
+    bool covered;
+    ty_bsdf_spawn(bsdf, sample->wi, u, &ray);
+    if (ty_rgb_is_black(ty_light_set_along(&in->lights, &ray, TY_FLOAT_MAX, &view, &covered)))
+        return (ty_rgb){0};
+    ty_hit hit;
+    counters->path_rays++;
+    bool found = ty_world_intersect(in->scene->world, &ray, &hit);
+    ty_rgb met = ty_light_set_along(&in->lights, &ray, found ? hit.t : TY_FLOAT_MAX, &view, &covered);
+    return ty_rgb_mul(met, sample->weight);
+}
+
+// A translucent body under a coat, seen by the camera: light comes by both, and the way on is one of them. Choosing
+// between them for the light as well would double the noise.
+static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf* body, path* p, ty_rgb* radiance,
+                         ty_counters* counters)
+{
+    float c[8], pair[4], u[8], chance = ty_bsdf_coat_chance(body);
+    ty_bsdf coat = *body;
+    ty_bsdf_take_coat(&coat);
+    ty_sampler_8d(sampler, TY_GROUP_COAT, c);
+    ty_bsdf_sample glint;
+    bool shines = ty_bsdf_sample_wi(&coat, c[2], (ty_vec2){c[0], c[1]}, &glint);
+    add(radiance, p->beta, direct_light(in, &coat, c + 4, counters));
+    if (shines)
+        add(radiance, p->beta, light_along(in, &coat, &glint, c[3], counters));
+
+    ty_rgb weight;
+    ty_rng extra = ty_sampler_extra(sampler, p->bounce);
+    ty_sampler_4d(sampler, ty_group_interior(p->bounce), pair);
+    ty_sampler_8d(sampler, ty_group_scatter(p->bounce), u);
+    const float inside[3] = {pair[0], pair[1], pair[3]}; // the direction gets the group's best pair
+    bool lit = ty_bsdf_take_interior(body, &in->scene->shading, inside, &extra, &weight);
+    counters->interior_rays++;
+    if (lit)
+        add(radiance, ty_rgb_mul(p->beta, weight), direct_light(in, body, u + 4, counters));
+
+    if (pair[2] < chance)
+    {
+        p->beta = ty_rgb_scale(p->beta, 1.0f / chance);
+        bool goes = shines && go_on(in, &coat, &glint, u[3], p);
+        p->view.done = true;
+        return goes;
+    }
+    p->beta = ty_rgb_scale(ty_rgb_mul(p->beta, weight), 1.0f / (1.0f - chance));
+    ty_bsdf_sample out;
+    return lit && ty_bsdf_sample_wi(body, u[2], (ty_vec2){u[0], u[1]}, &out) && go_on(in, body, &out, u[3], p);
+}
+
+// The next vertex of a path. False = the path ends.
+static bool advance(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf* bsdf, path* p, ty_rgb* radiance,
+                    ty_counters* counters)
+{
+    if (p->bounce == 0 && ty_bsdf_coat_chance(bsdf) > 0.0f)
+        return scatter_both(in, sampler, bsdf, p, radiance, counters);
     if (bsdf->kind == TY_BSDF_CDRF)
     {
-        // The resolving draws a direction from its second and third number: they get the group's best pair.
         float pair[4];
         ty_rgb weight = {1.0f, 1.0f, 1.0f};
         ty_rng extra = ty_sampler_extra(sampler, p->bounce);
@@ -62,18 +143,9 @@ static bool scatter(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf*
         p->beta = ty_rgb_mul(p->beta, weight);
         counters->interior_rays += bsdf->kind == TY_BSDF_CDRF_EXIT;
     }
-    float u[8]; // direction 2, lobe, roulette and start; light's surface 2, choice, start of the shadow ray
+    float u[8];
     ty_sampler_8d(sampler, ty_group_scatter(p->bounce), u);
-    *radiance = ty_rgb_add(*radiance, ty_rgb_mul(p->beta, direct_light(in, bsdf, u + 4, counters)));
-    ty_bsdf_sample sample;
-    if (!ty_bsdf_sample_wi(bsdf, u[2], (ty_vec2){u[0], u[1]}, &sample))
-        return false;
-    p->beta = ty_rgb_mul(p->beta, sample.weight);
-    if (!survives(&in->scene->render, p, &u[3]))
-        return false;
-    p->view = (ty_light_view){.from = bsdf->point.position, .pdf = sample.pdf, .full = sample.delta};
-    ty_bsdf_spawn(bsdf, sample.wi, u[3], &p->ray);
-    return true;
+    return scatter(in, bsdf, u, p, radiance, counters);
 }
 
 // Beer's law over a way through the medium behind a surface.
@@ -94,8 +166,9 @@ void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray r
     {
         ty_hit hit;
         bool covered = false, found = ty_world_intersect(scene->world, &p.ray, &hit);
-        ty_rgb met = ty_light_set_along(&in->lights, &p.ray, found ? hit.t : TY_FLOAT_MAX, &p.view, &covered);
-        out->radiance = ty_rgb_add(out->radiance, ty_rgb_mul(p.beta, met));
+        if (!p.view.done)
+            add(&out->radiance, p.beta,
+                ty_light_set_along(&in->lights, &p.ray, found ? hit.t : TY_FLOAT_MAX, &p.view, &covered));
         if (p.bounce == 0)
             out->covered = found || covered;
         if (!found)
@@ -108,10 +181,10 @@ void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray r
         counters->path_vertices++;
         if (!bsdf.entering)
             absorb(&p, ty_bsdf_absorption(&bsdf), hit.t);
-        out->radiance = ty_rgb_add(out->radiance, ty_rgb_mul(p.beta, bsdf.emission));
+        add(&out->radiance, p.beta, bsdf.emission);
         if (p.bounce == 0)
             ty_integrator_record(in, &bsdf, out);
-        if (p.bounce == scene->render.max_depth || !scatter(in, sampler, &bsdf, &p, &out->radiance, counters))
+        if (p.bounce == scene->render.max_depth || !advance(in, sampler, &bsdf, &p, &out->radiance, counters))
             return;
         counters->path_rays++;
     }

@@ -7,11 +7,12 @@
 #include "microfacet.h"
 #include <tsuya/shading/cdrf.h>
 
-// A film of water darkens and saturates: colour^(1 + .15 film). White stays white.
+// A film of water darkens and saturates: colour^(1 + .15 (film - 1)). The colour of a material is that
+// of its cooked state, so that at the default moisture it is what the scene says. White stays white.
 static float film_color(float c, float film)
 {
     c = ty_clamp(c, 0.0f, 1.0f);
-    return c < 1.0f ? ty_pow(c, 1.0f + 0.15f * film) : 1.0f;
+    return c < 1.0f ? ty_pow(c, 1.0f + 0.15f * (film - 1.0f)) : 1.0f; // cooked: the film is whole
 }
 
 static ty_moisture_optics optics_at(const ty_cdrf_def* d, const ty_shading_context* context, const ty_surface_point* p)
@@ -88,30 +89,51 @@ static float kernel_gain(const ty_bsdf* b, const ty_shading_context* context)
     return ty_cdrf_gaussian_integral(ty_cdrf_spread(b, b->curvature)) * TY_INV_PI;
 }
 
+float ty_bsdf_coat_chance(const ty_bsdf* b)
+{
+    if (b->kind != TY_BSDF_CDRF || b->coat_weight <= 0.0f)
+        return 0.0f;
+    // The coat carries the highlights, which are bright where they are: never sampled less than one time in ten.
+    return ty_clamp(ty_coat_albedo(b, ty_dot(b->wo, b->frame.n)), 0.1f, 0.9f);
+}
+
+void ty_bsdf_take_coat(ty_bsdf* b)
+{
+    TY_ASSERT(b->kind == TY_BSDF_CDRF);
+    b->kind = TY_BSDF_CDRF_COAT;
+}
+
+bool ty_bsdf_take_interior(ty_bsdf* b, const ty_shading_context* context, const float u[3], ty_rng* extra,
+                           ty_rgb* weight)
+{
+    if (b->material->cdrf.evaluate == TY_CDRF_PROBE && context && context->world)
+        b->curvature = ty_mean_curvature(context->world, &b->point);
+    float coat = ty_coat_albedo(b, ty_dot(b->wo, b->frame.n));
+    float through = (1.0f - coat) / (1.0f - b->coat_weight * b->coat_row.average);
+    *weight = ty_rgb_scale(b->color, through * kernel_gain(b, context));
+    ty_surface_point exit;
+    if (trace_interior(b, context, u, extra, &exit))
+        b->point = exit;
+    b->kind = TY_BSDF_CDRF_EXIT;
+    b->frame = ty_frame_from_normal(b->point.ns);
+    return !ty_rgb_is_black(*weight);
+}
+
 bool ty_bsdf_resolve(ty_bsdf* b, const ty_shading_context* context, const float u[4], ty_rng* extra, ty_rgb* weight)
 {
     *weight = ty_rgb_grey(1.0f);
     if (b->kind != TY_BSDF_CDRF)
         return true;
-    float coat = ty_coat_albedo(b, ty_dot(b->wo, b->frame.n));
-    // The coat carries the highlights, which are bright where they are: never sampled less than one time in four.
-    float chance = b->coat_weight > 0.0f ? ty_clamp(coat, 0.25f, 0.9f) : 0.0f;
+    float chance = ty_bsdf_coat_chance(b);
     if (u[0] < chance)
     {
-        b->kind = TY_BSDF_CDRF_COAT;
+        ty_bsdf_take_coat(b);
         *weight = ty_rgb_grey(1.0f / chance);
         return true;
     }
-    if (b->material->cdrf.evaluate == TY_CDRF_PROBE && context && context->world)
-        b->curvature = ty_mean_curvature(context->world, &b->point);
-    float through = (1.0f - coat) / ((1.0f - b->coat_weight * b->coat_row.average) * (1.0f - chance));
-    *weight = ty_rgb_scale(b->color, through * kernel_gain(b, context));
-    ty_surface_point exit;
-    if (trace_interior(b, context, u + 1, extra, &exit))
-        b->point = exit;
-    b->kind = TY_BSDF_CDRF_EXIT;
-    b->frame = ty_frame_from_normal(b->point.ns);
-    return !ty_rgb_is_black(*weight);
+    bool lit = ty_bsdf_take_interior(b, context, u + 1, extra, weight);
+    *weight = ty_rgb_scale(*weight, 1.0f / (1.0f - chance));
+    return lit;
 }
 
 float ty_coat_albedo(const ty_bsdf* b, float mu)

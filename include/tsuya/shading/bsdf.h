@@ -76,6 +76,13 @@ typedef struct ty_bsdf_sample
 bool ty_bsdf_resolve(ty_bsdf* bsdf, const struct ty_shading_context* context, const float u[4], ty_rng* extra,
                      ty_rgb* weight);
 
+// The same two ways apart, for a caller that follows both: the coat where the point is, or the lobe where light leaves
+// (u: 3 numbers; its weight takes no part of the choice). Both only for a bsdf of kind TY_BSDF_CDRF.
+float ty_bsdf_coat_chance(const ty_bsdf* bsdf); // a good probability for going on with the coat; 0 = there is none
+void ty_bsdf_take_coat(ty_bsdf* bsdf);
+bool ty_bsdf_take_interior(ty_bsdf* bsdf, const struct ty_shading_context* context, const float u[3], ty_rng* extra,
+                           ty_rgb* weight);
+
 bool ty_bsdf_is_delta(const ty_bsdf* bsdf);                       // light sampling is pointless
 ty_rgb ty_bsdf_eval(const ty_bsdf* bsdf, ty_vec3 wi, float* pdf); // f |cos|, and the pdf sample would have
 bool ty_bsdf_sample_wi(const ty_bsdf* bsdf, float u_lobe, ty_vec2 u, ty_bsdf_sample* out); // false = absorbed
