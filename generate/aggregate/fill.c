@@ -145,6 +145,7 @@ typedef struct darts
     int* at; // point of each cell, -1 = none: a cell is too small for two
     ty_vec3* points;
     int count;
+    int64_t tries; // darts of a round
 } darts;
 
 static void dart_cell(const darts* d, ty_vec3 p, int c[3])
@@ -191,10 +192,10 @@ static ty_status darts_round(darts* d, ty_rng* rng, int count, ty_error* error)
     memset(d->at, 0xff, cells * sizeof(int));
     for (int i = 0; i < d->count; i++)
         dart_place(d, i);
-    for (int64_t tries = 60ll * count; tries > 0 && d->count < count; tries--)
+    for (int64_t tries = d->tries; tries > 0 && d->count < count; tries--)
     {
-        ty_vec3 p = ty_vec3_make(low.x + size.x * ty_rng_float(rng), low.y + size.y * ty_rng_float(rng),
-                                 low.z + size.z * ty_rng_float(rng));
+        float u = ty_rng_float(rng), v = ty_rng_float(rng), w = ty_rng_float(rng);
+        ty_vec3 p = ty_add(low, ty_mul3(size, ty_vec3_make(u, v, w)));
         if (p.y > ty_fill_top_height(d->top, p) - d->space.inset || !dart_is_clear(d, p) || !space_holds(&d->space, p))
             continue;
         d->points[d->count] = p;
@@ -244,8 +245,11 @@ ty_status ty_fill_seeds(const ty_container* container, const ty_fill_top* top, f
     double each = volume / (double)count;
     d.radius = 0.9f * ty_pow((float)(0.73 * each), 1.0f / 3.0f);
     float spacing = 2.0f * d.radius;
+    ty_vec3 box = ty_sub(d.space.bounds.high, d.space.bounds.low);
+    double hits = ty_max(1e-4f, (float)volume / (box.x * box.y * box.z)); // share of the darts that fall into the space
+    d.tries = (int64_t)(60.0 * (double)count / hits);
     ty_rng rng = ty_rng_make(seed, 0x6461727473, 0);
-    for (int round = 0; round < 40 && d.count < count; round++, d.radius *= 0.94f)
+    for (int round = 0; round < 14 && d.count < count; round++, d.radius *= 0.94f)
     {
         ty_status status = darts_round(&d, &rng, count, error);
         if (status != TY_OK)

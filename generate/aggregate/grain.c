@@ -59,8 +59,8 @@ static shape shape_draw(const ty_grain_def* def, ty_seed seed, int variant)
     }
     for (int i = 0; i < 3; i++)
     {
-        ty_vec3 u = {ty_rng_range(&rng, -0.9f, 0.9f), ty_grain_bell(&rng), ty_grain_bell(&rng)};
-        s.lump_center[i] = blunt_ellipsoid(&s, ty_normalize(u));
+        float x = ty_rng_range(&rng, -0.9f, 0.9f), y = ty_grain_bell(&rng), z = ty_grain_bell(&rng);
+        s.lump_center[i] = blunt_ellipsoid(&s, ty_normalize(ty_vec3_make(x, y, z)));
         s.lump[i] = s.b * 0.04f * ty_grain_bell(&rng);
     }
     return s;

@@ -141,7 +141,7 @@ static ty_status pile_fill(kit* k, ty_error* error)
     ty_status status = ty_fill_plan(k->container, volume, fill->heap, inset, &k->top, &capacity, error);
     if (status != TY_OK)
         return ty_error_set(error, status, "fill.count: %d grains at a density of %g; the container holds at most %d",
-                            fill->count, (double)fill->density, (int)(capacity / volume * (double)count));
+                            fill->count, (double)fill->density, (int)(capacity / volume * (double)fill->count));
     ty_vec3* points = TY_TRY_ALLOC(ty_vec3, count);
     if (!points)
         return ty_error_set(error, TY_NO_MEMORY, "no memory for %d grains", count);

@@ -118,7 +118,7 @@ static void test_impossible_wishes(void** state)
     assert_refused(&r, "fill.count");
     r = small_bowl();
     r.fill.count = 3000;
-    assert_refused(&r, "at most");
+    assert_refused(&r, "at most 4"); // a hollow of 13 cm^3 and a heap as steep as grains stand: some 430
     r = small_bowl();
     r.container.kind = TY_CONTAINER_BOX;
     r.container.shape.size = ty_vec3_make(0.002f, 0.01f, 0.01f);
@@ -151,7 +151,7 @@ static void assert_in_bowl(const ty_aggregate* a, const ty_shape_def* bowl)
         {
             ty_vec3 p = ty_map_point(&a->transforms[i], mesh->positions[v]);
             assert_true(p.x * p.x + p.z * p.z < ty_sqr(bowl->radius + 0.004f));
-            assert_true(p.y > bowl->height || ty_shape_interior_distance(bowl, p) < 0.25e-3f);
+            assert_true(p.y > bowl->height || ty_shape_interior_distance(bowl, p) < 0.2e-3f);
         }
     }
 }
@@ -160,6 +160,7 @@ static void test_bowl(void** state)
 {
     (void)state;
     ty_aggregate_recipe r = small_bowl();
+    r.moisture = (ty_wetness_def){.variation = 0.5f, .drying = 0.6f};
     ty_aggregate* a = made(&r, NULL);
     assert_int_equal(a->instance_count, 240);
     assert_int_equal(a->prototype_count, 4);
@@ -236,7 +237,7 @@ static void test_sphere(void** state)
     {
         const ty_mesh* mesh = a->prototypes[a->prototype_index[i]];
         for (uint32_t v = 0; v < mesh->vertex_count; v += 5)
-            assert_true(ty_length(ty_map_point(&a->transforms[i], mesh->positions[v])) < 0.016f + 0.25e-3f);
+            assert_true(ty_length(ty_map_point(&a->transforms[i], mesh->positions[v])) < 0.016f + 0.2e-3f);
     }
     ty_aggregate_destroy(a);
 }
@@ -302,6 +303,9 @@ static void test_walls(void** state)
         assert_true(gap < 0.3e-3f || gap > 0.015f || further > gap + 0.1e-3f);
     }
     assert_true(inside > 500);
+    ty_vec3 up; // the table
+    assert_true(fabsf(ty_container_wall(bowl, 0, ty_vec3_make(0.05f, 1e-3f, 0.0f), &up) - 1e-3f) < 1e-4f &&
+                up.y > 0.99f);
     assert_true(ty_container_lost(bowl, ty_vec3_make(0.061f, 0.01f, 0.0f)));
     assert_false(ty_container_lost(bowl, ty_vec3_make(0.03f, 0.07f, 0.0f)));
     ty_container_destroy(bowl);

@@ -280,13 +280,10 @@ static void test_removal_keeps_impulses(void** state)
     gone[top] = true;
     ty_pile_remove(s.pile, gone);
     assert_int_equal(ty_pile_count(s.pile), 99);
-    ty_body first = ty_pile_bodies(s.pile)[0];
-    for (int i = 0; i < 25; i++)
-        ty_pile_step(s.pile, NULL);
+    ty_pile_step(s.pile, NULL);
     ty_pile_metrics metrics;
     ty_pile_measure(s.pile, &metrics, NULL);
-    assert_true(metrics.speed_rms < 5e-3f); // without their impulses grains would sink by g h a step, 40 mm/s in all
-    assert_true(ty_length(ty_sub(first.position, ty_pile_bodies(s.pile)[0].position)) < 1e-4f);
+    assert_true(metrics.speed_rms < 2e-3f); // without the impulses of their contacts grains would fall by g h = 4 mm/s
     settled_term(&s);
 }
 
