@@ -223,9 +223,10 @@ static ty_status plan(const ty_arguments* arguments, const ty_scene* scene, rend
     job->setup.sample_begin = job->render.sample_begin = range[0];
     job->setup.sample_end = job->render.sample_end = range[1];
     job->render.progress = true;
-    job->write = (ty_film_write){.scene = scene, .sample_begin = range[0],
-                               .sample_end = range[1],
-                               .part = range[0] != 0 || range[1] != scene->render.samples};
+    job->write = (ty_film_write){.scene = scene,
+                                 .sample_begin = range[0],
+                                 .sample_end = range[1],
+                                 .part = range[0] != 0 || range[1] != scene->render.samples};
     return TY_OK;
 }
 

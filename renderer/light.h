@@ -46,7 +46,7 @@ typedef struct ty_light_view
     float pdf;    // of the direction by the surface's own sampling
     bool full;    // no light sampling competed: camera rays and mirror reflections
     bool camera;
-    bool done;    // all light along the ray has been counted already
+    bool done; // all light along the ray has been counted already
 } ty_light_view;
 
 void ty_light_set_init(ty_light_set* set, const ty_scene* scene);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files: bounded reading, atomic writing (temporary, fsync, rename), paths.
 #pragma once
-#include <tsuya/base/status.h>
 #include <stdint.h>
+#include <tsuya/base/status.h>
 
 #define TY_PATH_MAX 4096
 
@@ -26,8 +26,8 @@ typedef struct ty_atomic_file
     int slot;                    // in the table of pending files
 } ty_atomic_file;
 
-// Fails early when the folder is missing or not writable or path is a directory, a device or a pipe. A link is followed.
-// The temporary exists (empty) afterwards. At most 64 are pending at a time. Callable from any thread.
+// Fails early when the folder is missing or not writable or path is a directory, a device or a pipe. A link is
+// followed. The temporary exists (empty) afterwards. At most 64 are pending at a time. Callable from any thread.
 TY_CHECKED ty_status ty_atomic_begin(ty_atomic_file* file, const char* path, ty_error* error);
 // fsync, rename, fsync of the folder. On failure the temporary is gone and the old file as it was.
 TY_CHECKED ty_status ty_atomic_commit(ty_atomic_file* file, ty_error* error);
@@ -39,9 +39,9 @@ TY_CHECKED ty_status ty_folder_create(const char* path, ty_error* error); // wit
 
 bool ty_file_exists(const char* path); // a regular file
 bool ty_folder_exists(const char* path);
-const char* ty_path_extension(const char* path);                      // "exr", without the dot; "" if none
+const char* ty_path_extension(const char* path); // "exr", without the dot; "" if none
 // Paths that do not fit out become the empty path, which names nothing.
-void ty_path_folder(const char* path, char out[TY_PATH_MAX]);         // "." if none
+void ty_path_folder(const char* path, char out[TY_PATH_MAX]);                   // "." if none
 void ty_path_join(const char* folder, const char* name, char out[TY_PATH_MAX]); // name absolute: name alone
 
 // Runs fn in a child process with limits: for importers of foreign code. What fn writes to output_fd becomes *output

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages and progress on standard error. Standard output belongs to results.
 #pragma once
-#include <tsuya/base/status.h>
 #include <stdint.h>
+#include <tsuya/base/status.h>
 
 typedef enum ty_log_level
 {
@@ -44,5 +44,5 @@ void ty_progress_begin(ty_progress* progress, const char* label);
 void ty_progress_update(ty_progress* progress, double fraction, const char* detail);
 void ty_progress_end(ty_progress* progress);
 
-double ty_time_now(void);        // seconds, monotonic
-uint64_t ty_memory_peak(void);   // bytes, resident peak of this process
+double ty_time_now(void);      // seconds, monotonic
+uint64_t ty_memory_peak(void); // bytes, resident peak of this process

@@ -25,6 +25,6 @@ float ty_moisture_uptake(float minutes, float celsius);
 // w = (.145 + u) / (1 + u); clamped to at least .05.
 float ty_moisture_wet_basis(float uptake);
 
-// After soaking, cooking adds water up to the cooked wet basis .62 in proportion to cooked (< 0: not cooked, for soaking
-// alone gelatinises nothing). A wet basis given outright stays as it is. Out-of-range values are clamped.
+// After soaking, cooking adds water up to the cooked wet basis .62 in proportion to cooked (< 0: not cooked, for
+// soaking alone gelatinises nothing). A wet basis given outright stays as it is. Out-of-range values are clamped.
 ty_moisture ty_moisture_make(const ty_moisture_def* def);

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parameter tables: one row per field of a _def struct. From them come the YAML reader, help, schema and docs.
 #pragma once
-#include <tsuya/base/math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <tsuya/base/math.h>
 
 // What a field holds in memory (at row.offset) and how it is written.
 typedef enum ty_param_type
 {
-    TY_PARAM_BOOL,   // bool
-    TY_PARAM_INT,    // int
-    TY_PARAM_INT2,   // int[2]
-    TY_PARAM_FLOAT,  // float
-    TY_PARAM_FLOAT2, // float[2]; one number written = both
-    TY_PARAM_FLOAT3, // ty_vec3; not extended from one number
-    TY_PARAM_RGB,    // ty_rgb, ACEScg unless a colour space is named; one number = grey
-    TY_PARAM_SEED,   // ty_seed
-    TY_PARAM_STRING, // const char*, owned by the reader's arena
-    TY_PARAM_PATH,   // const char*, resolved against the file's folder and the search paths
-    TY_PARAM_ENUM,   // int, index into choices
+    TY_PARAM_BOOL,         // bool
+    TY_PARAM_INT,          // int
+    TY_PARAM_INT2,         // int[2]
+    TY_PARAM_FLOAT,        // float
+    TY_PARAM_FLOAT2,       // float[2]; one number written = both
+    TY_PARAM_FLOAT3,       // ty_vec3; not extended from one number
+    TY_PARAM_RGB,          // ty_rgb, ACEScg unless a colour space is named; one number = grey
+    TY_PARAM_SEED,         // ty_seed
+    TY_PARAM_STRING,       // const char*, owned by the reader's arena
+    TY_PARAM_PATH,         // const char*, resolved against the file's folder and the search paths
+    TY_PARAM_ENUM,         // int, index into choices
     TY_PARAM_SCALAR_INPUT, // ty_input: a number, { texture: name, ... } or { attribute: name, scale:, offset: }
     TY_PARAM_COLOR_INPUT,  // ty_input with three channels
-    TY_PARAM_GROUP,  // a nested struct in place, described by group
-    TY_PARAM_LIST,   // ty_param_list of structs described by group
+    TY_PARAM_GROUP,        // a nested struct in place, described by group
+    TY_PARAM_LIST,         // ty_param_list of structs described by group
 } ty_param_type;
 
 // A parameter of a surface: a constant, optionally times a texture or a per-instance attribute.
@@ -56,22 +56,22 @@ typedef struct ty_param_table ty_param_table;
 
 typedef struct ty_param
 {
-    const char* name;   // as in YAML
+    const char* name; // as in YAML
     ty_param_type type;
-    const char* unit;   // "m", "deg" (stored in radians), "mm" (stored in metres), "s", "" ...
-    double minimum, maximum;      // per component, inclusive, in the written unit; both 0 = unbounded
-    const char* const* choices;   // ENUM: names, NULL-terminated
-    const ty_param_table* group;  // GROUP, LIST
+    const char* unit;            // "m", "deg" (stored in radians), "mm" (stored in metres), "s", "" ...
+    double minimum, maximum;     // per component, inclusive, in the written unit; both 0 = unbounded
+    const char* const* choices;  // ENUM: names, NULL-terminated
+    const ty_param_table* group; // GROUP, LIST
     size_t offset;
-    const char* help;   // one line
+    const char* help; // one line
     bool required;
 } ty_param;
 
 struct ty_param_table
 {
-    const char* name;   // "film", "material.cdrf" ...: also the heading in the reference
-    const char* help;   // one or two sentences
-    size_t size;        // of the struct
+    const char* name;               // "film", "material.cdrf" ...: also the heading in the reference
+    const char* help;               // one or two sentences
+    size_t size;                    // of the struct
     void (*set_default)(void* def); // defaults come from the struct's default function, nowhere else
     const ty_param* params;
     int count;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A pool of threads with stable worker indices. The only file of the project that starts threads is workers.c.
 #pragma once
-#include <tsuya/base/status.h>
 #include <stdint.h>
+#include <tsuya/base/status.h>
 
 typedef struct ty_workers ty_workers; // opaque
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Indexed triangle meshes with normals, uv, welded topology, curvature and named vertex attributes.
 #pragma once
+#include <stdint.h>
 #include <tsuya/base/math.h>
 #include <tsuya/base/memory.h>
 #include <tsuya/base/status.h>
-#include <stdint.h>
 
 typedef struct ty_mesh_attribute
 {
@@ -44,20 +44,24 @@ TY_CHECKED ty_mesh* ty_mesh_create(uint32_t vertex_count, uint32_t triangle_coun
 void ty_mesh_destroy(ty_mesh* mesh); // NULL is allowed
 ty_mesh* ty_mesh_copy(const ty_mesh* mesh);
 
-// Finite positions, indices in range, some area: else TY_BAD_FILE naming the first offender (name = the file, for messages).
+// Finite positions, indices in range, some area: else TY_BAD_FILE naming the first offender (name = the file, for
+// messages).
 TY_CHECKED ty_status ty_mesh_validate(const ty_mesh* mesh, const char* name, ty_error* error);
 void ty_mesh_compute_bounds(ty_mesh* mesh);
 void ty_mesh_compute_welds(ty_mesh* mesh); // exact equality of positions
 // Angle-weighted vertex normals over welded vertices; edges sharper than crease (radians; pi = all smooth) are split:
 // vertices may be added.
 void ty_mesh_compute_normals(ty_mesh* mesh, float crease);
-// Principal curvatures and direction per vertex (Rusinkiewicz 2004 over welded vertices), then `smoothing` Gaussian passes.
+// Principal curvatures and direction per vertex (Rusinkiewicz 2004 over welded vertices), then `smoothing` Gaussian
+// passes.
 void ty_mesh_compute_curvature(ty_mesh* mesh, int smoothing);
-// Positions, normals, curvature (exactly) and bounds; triangles are turned round under a mirror. Welds stay as they are.
+// Positions, normals, curvature (exactly) and bounds; triangles are turned round under a mirror. Welds stay as they
+// are.
 void ty_mesh_transform(ty_mesh* mesh, const ty_affine* m);
 void ty_mesh_analyse(const ty_mesh* mesh, ty_mesh_topology* out); // needs welds
 
-// Gaussian average of a per-vertex field over the surface: weight exp(-|d|^2 / (2 width^2)) * vertex area, cut at 3 width.
+// Gaussian average of a per-vertex field over the surface: weight exp(-|d|^2 / (2 width^2)) * vertex area, cut at 3
+// width.
 void ty_mesh_smooth_field(const ty_mesh* mesh, float* field, float width);
 
 // NULL if there is none.

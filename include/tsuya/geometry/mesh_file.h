@@ -9,7 +9,8 @@ TY_CHECKED ty_status ty_mesh_read(const char* path, ty_mesh** out, ty_error* err
 
 // PLY from memory (ascii, binary little and big endian). Keeps every scalar vertex property that is not a position,
 // normal, uv or index as a named attribute; properties NAME_x NAME_y NAME_z are not joined. Polygons are fanned.
-TY_CHECKED ty_status ty_ply_read_memory(const char* name, const void* bytes, size_t size, ty_mesh** out, ty_error* error);
+TY_CHECKED ty_status ty_ply_read_memory(const char* name, const void* bytes, size_t size, ty_mesh** out,
+                                        ty_error* error);
 
 // Binary little-endian PLY with normals, uv (s, t), curvature and attributes where present. Atomic.
 TY_CHECKED ty_status ty_ply_write(const char* path, const ty_mesh* mesh, ty_error* error);

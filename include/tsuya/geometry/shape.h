@@ -13,33 +13,33 @@ typedef enum ty_shape_kind
     TY_SHAPE_TORUS,     // radius (to the tube's centre), tube
     TY_SHAPE_PLANE,     // size x, z half extents; open, normal +y
     TY_SHAPE_DISC,      // radius; open, normal +y
-    TY_SHAPE_BOWL,      // radius (rim, outside), height, thickness, foot radius, foot height, curve: a turned vessel, closed solid
+    TY_SHAPE_BOWL,      // radius (rim, outside), height, thickness, foot radius, foot height, curve: a turned solid
     TY_SHAPE_DOME,      // radius, height: closed half ellipsoid standing on y = 0
     TY_SHAPE_SWEEP,     // size: a floor that curves up into a wall behind (photographer's sweep); open
 } ty_shape_kind;
 
 typedef struct ty_shape_def
 {
-    int kind;           // ty_shape_kind
-    float radius;       // m
-    ty_vec3 size;       // m
-    float height;       // m
-    float tube;         // m
-    float thickness;    // m, wall of a bowl
-    float foot_radius;  // m
-    float foot_height;  // m
-    float curve;        // bowl profile: 1 = cone, 2 = parabola, higher = fuller
-    float rounding;     // m
-    int divisions;      // around; the other direction follows the shape, 8..4096
+    int kind;          // ty_shape_kind
+    float radius;      // m
+    ty_vec3 size;      // m
+    float height;      // m
+    float tube;        // m
+    float thickness;   // m, wall of a bowl
+    float foot_radius; // m
+    float foot_height; // m
+    float curve;       // bowl profile: 1 = cone, 2 = parabola, higher = fuller
+    float rounding;    // m
+    int divisions;     // around; the other direction follows the shape, 8..4096
 } ty_shape_def;
 
 ty_shape_def ty_shape_def_default(void);
 const ty_param_table* ty_shape_params(void);
 
-// Welds, normals, uv, bounds and curvature (by the shape's formula) are filled in. Where curvature jumps, the border has
-// that of the flatter side. divisions is the number of segments around the equator, rounded up to a multiple of 8 for
-// spheres, ellipsoids and round boxes: a sphere has 0.75 divisions^2 triangles.
-// Impossible sizes are TY_BAD_INPUT naming the field.
+// Welds, normals, uv, bounds and curvature (by the shape's formula) are filled in. Where curvature jumps, the border
+// has that of the flatter side. divisions is the number of segments around the equator, rounded up to a multiple of 8
+// for spheres, ellipsoids and round boxes: a sphere has 0.75 divisions^2 triangles. Impossible sizes are TY_BAD_INPUT
+// naming the field.
 TY_CHECKED ty_status ty_shape_create(const ty_shape_def* def, ty_mesh** out, ty_error* error);
 
 // Signed distance (negative inside) to the *interior* of a vessel: the space to be filled. For BOWL the hollow below

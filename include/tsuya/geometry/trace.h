@@ -11,7 +11,8 @@ typedef struct ty_world ty_world; // opaque
 typedef enum ty_ray_flags
 {
     TY_RAY_PLAIN = 0,
-    TY_RAY_FRONT_ONLY = 1, // objects marked closed_subsurface are seen from outside only: back-face hits are passed through
+    TY_RAY_FRONT_ONLY =
+        1, // objects marked closed_subsurface are seen from outside only: back-face hits are passed through
 } ty_ray_flags;
 
 typedef struct ty_ray
@@ -29,7 +30,7 @@ typedef struct ty_ray
 typedef struct ty_hit
 {
     float t;
-    float u, v; // barycentric weights of vertices 1 and 2
+    float u, v;                          // barycentric weights of vertices 1 and 2
     uint32_t object, instance, triangle; // instance is the index within the object (0 for a plain object)
 } ty_hit;
 
@@ -111,7 +112,7 @@ typedef struct ty_surface_point
     ty_vec3 dpdu;     // unit tangent along u of the uv map, or along curvature_1, or any; perpendicular to ns
     ty_vec2 uv;       // (0,0) without uv
     uint32_t object, instance, triangle;
-    float u, v;       // barycentric
+    float u, v; // barycentric
 } ty_surface_point;
 
 void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point* out);

@@ -72,6 +72,6 @@ typedef struct ty_film_write
 TY_CHECKED ty_status ty_film_to_exr(const ty_film* film, const ty_film_write* how, ty_exr** out, ty_error* error);
 
 // Joins parts written with `part`: same hash, seed, size and window; their sample ranges follow each other. The result
-// has the bytes that one run of the joined range writes: a picture if that is all the scene asks for, else a part again.
-// A gap or an overlap is TY_BAD_FILE that names it.
+// has the bytes that one run of the joined range writes: a picture if that is all the scene asks for, else a part
+// again. A gap or an overlap is TY_BAD_FILE that names it.
 TY_CHECKED ty_status ty_film_merge(const char* const* paths, int count, const char* output, ty_error* error);

@@ -33,7 +33,7 @@ typedef struct ty_camera_def
     float focus_distance;          // m; 0 = the distance to focus_point or look_at
     ty_vec3 focus_point;           // used when has_focus_point
     bool has_focus_point;
-    float near_clip;               // m
+    float near_clip; // m
 } ty_camera_def;
 
 typedef enum ty_integrator_kind
@@ -47,13 +47,13 @@ typedef enum ty_integrator_kind
 
 typedef struct ty_render_def
 {
-    int integrator;      // ty_integrator_kind
-    int samples;         // per pixel
-    int max_depth;       // surface interactions of a path
-    int roulette_depth;  // no Russian roulette before this many interactions
+    int integrator;     // ty_integrator_kind
+    int samples;        // per pixel
+    int max_depth;      // surface interactions of a path
+    int roulette_depth; // no Russian roulette before this many interactions
     ty_seed seed;
-    float ao_distance;       // m
-    float curvature_scale;   // m: curvature * scale is shown as grey around .5
+    float ao_distance;     // m
+    float curvature_scale; // m: curvature * scale is shown as grey around .5
 } ty_render_def;
 
 typedef enum ty_light_kind
@@ -93,8 +93,8 @@ const ty_param_table* ty_light_params(void);
 
 typedef struct ty_scene_object
 {
-    const char* name;     // as in the file, or "object3"
-    uint32_t material;    // index
+    const char* name;               // as in the file, or "object3"
+    uint32_t material;              // index
     const float* const* attributes; // [attribute_count] -> [instances] or NULL
     const uint32_t* ids;            // [instances] from the aggregate file, or NULL
     uint32_t instance_count;
@@ -104,7 +104,7 @@ typedef struct ty_scene_object
 typedef struct ty_scene
 {
     ty_arena* arena;
-    const char* path;   // of the scene file
+    const char* path; // of the scene file
     ty_film_def film;
     ty_camera_def camera;
     ty_render_def render;
@@ -124,9 +124,9 @@ typedef struct ty_scene
     int attribute_count;
     ty_depth_field** depth_fields; // by prototype
     ty_shading_context shading;    // ready for use
-    const char* recipe;    // complete text of the scene: variables, overrides, includes and recipes resolved
-    const char* overrides; // "-D a=b --set c=d", as given; "" if none
-    char hash[33];         // of the recipe and of every file that went in
+    const char* recipe;            // complete text of the scene: variables, overrides, includes and recipes resolved
+    const char* overrides;         // "-D a=b --set c=d", as given; "" if none
+    char hash[33];                 // of the recipe and of every file that went in
     struct ty_scene_resources* resources; // private: meshes and aggregates
     // statistics of loading, seconds and counts
     double load_seconds, asset_seconds, build_seconds;
@@ -136,18 +136,18 @@ typedef struct ty_scene
 
 typedef struct ty_scene_options
 {
-    const char* const* sets;      // "path=value"
+    const char* const* sets; // "path=value"
     int set_count;
     const char* const* variables; // "name=value"
     int variable_count;
-    const char* ocio;             // --ocio or NULL
-    const char* isa;              // --isa or NULL
-    const char* cache_folder;     // NULL = $TSUYA_CACHE, else $XDG_CACHE_HOME/tsuya, else ~/.cache/tsuya
-    bool sandbox;                 // no path outside the scene's folder
-    bool quick;                   // half size and 16 samples, as overrides after all others
-    bool check_only;              // read and verify everything, but make no asset and build no tree
+    const char* ocio;         // --ocio or NULL
+    const char* isa;          // --isa or NULL
+    const char* cache_folder; // NULL = $TSUYA_CACHE, else $XDG_CACHE_HOME/tsuya, else ~/.cache/tsuya
+    bool sandbox;             // no path outside the scene's folder
+    bool quick;               // half size and 16 samples, as overrides after all others
+    bool check_only;          // read and verify everything, but make no asset and build no tree
     ty_trace_path trace_path;
-    ty_workers* workers;          // for generators; NULL = the caller
+    ty_workers* workers; // for generators; NULL = the caller
 } ty_scene_options;
 
 // path: a scene file or a folder with scene.yaml. On failure *out is NULL and errors holds every mistake found.
