@@ -10,7 +10,7 @@ enum
     ROUNDS = 12, // of settling and looking for grains that float
 };
 
-#define FALLING_TILT 0.5f // rad, largest angle with the horizontal of a grain that falls onto the pile
+#define FALLING_TILT 0.25f // rad, largest angle with the horizontal of a grain that falls onto the pile
 
 typedef struct kit
 {
@@ -106,24 +106,26 @@ static void grains_drop(kit* k, int count)
     float length = 1.1f * k->recipe->element.length * (1.0f + 2.0f * k->recipe->element.variation);
     ty_bounds interior = ty_container_interior(k->container);
     ty_vec3 center = ty_mul(ty_add(interior.low, interior.high), 0.5f);
-    float radius = 0.62f * ty_min(k->top.radius_x, k->top.radius_z), above = 0.6f * length;
+    float radius = 0.58f * ty_min(k->top.radius_x, k->top.radius_z), above = 0.6f * length;
     for (int i = 0; i < ty_pile_count(k->pile); i++) // over all that is there already
     {
         ty_vec3 p = ty_pile_bodies(k->pile)[i].position;
-        above = ty_max(above, p.y - ty_fill_top_height(&k->top, p) + 0.75f * length);
+        above = ty_max(above, p.y - ty_fill_top_height(&k->top, p) + 0.6f * length);
     }
     int across = (int)(2.0f * radius / length) + 1, cells = across * across;
-    for (int placed = 0, cell = 0; placed < count; cell++)
+    int start = (int)(ty_rng_float(&k->rng) * (float)cells);
+    for (int placed = 0, n = 0; placed < count; n++)
     {
+        int cell = (start + n) % cells;
         float jitter = 0.12f * length, x = ((float)(cell % across) - 0.5f * (float)(across - 1)) * length;
-        float z = ((float)(cell % cells / across) - 0.5f * (float)(across - 1)) * length;
+        float z = ((float)(cell / across) - 0.5f * (float)(across - 1)) * length;
         x += ty_rng_range(&k->rng, -jitter, jitter);
         z += ty_rng_range(&k->rng, -jitter, jitter);
-        float chance = ty_rng_float(&k->rng), layers = (float)(cell / cells);
-        if (x * x + z * z > radius * radius || chance > 0.5f) // half of the places, so that no lattice shows
+        float chance = ty_rng_float(&k->rng), layers = (float)(n / cells);
+        if (x * x + z * z > radius * radius || chance > 0.85f) // some places stay empty, so that no lattice shows
             continue;
         ty_vec3 p = {center.x + x, 0.0f, center.z + z};
-        p.y = ty_fill_top_height(&k->top, p) + above + layers * 0.75f * length;
+        p.y = ty_fill_top_height(&k->top, p) + above + layers * 0.55f * length;
         ty_body body = body_draw(k, p, ty_min(k->recipe->fill.tilt, FALLING_TILT));
         ty_pile_add(k->pile, &body, 1);
         placed++;
@@ -161,24 +163,27 @@ static ty_status pile_fill(kit* k, ty_error* error)
 
 // --- adjust ---
 
-// Settles; drops new grains for those lost over the rim, and settles again.
+// Settles; drops a new grain for each that is lost over the rim.
 static ty_status pile_rest(kit* k, ty_error* error)
 {
-    for (int round = 0; round < ROUNDS; round++)
+    int allowed = 20 + k->recipe->fill.count / 4;
+    ty_pile_end end = TY_PILE_LOST;
+    while (end == TY_PILE_LOST && k->lost <= allowed)
     {
         int lost;
-        ty_pile_end end = ty_pile_settle(k->pile, k->recipe->settle.max_seconds, k->workers, &lost);
+        end = ty_pile_settle(k->pile, k->recipe->settle.max_seconds, k->workers, &lost);
         k->lost += lost;
-        k->rest = end == TY_PILE_REST;
-        if (end == TY_PILE_CANCELED)
-            return ty_error_set(error, TY_INTERRUPTED, "interrupted while settling");
-        if (lost == 0)
-            return TY_OK;
-        grains_drop(k, lost);
         k->replaced += lost;
+        grains_drop(k, lost);
     }
-    return ty_error_set(error, TY_BAD_INPUT, "fill.count: %d grains do not stay in the container, %d are left",
-                        k->recipe->fill.count, ty_pile_count(k->pile));
+    k->rest = end == TY_PILE_REST;
+    if (end == TY_PILE_CANCELED)
+        return ty_error_set(error, TY_INTERRUPTED, "interrupted while settling");
+    if (end == TY_PILE_LOST)
+        return ty_error_set(error, TY_BAD_INPUT,
+                            "fill.count: %d grains do not stay in the container: %d fell over its rim",
+                            k->recipe->fill.count, k->lost);
+    return TY_OK;
 }
 
 // A push of about the speed of a fall through its width, for grains that are wedged where none can be dropped.

@@ -18,7 +18,7 @@ enum
 #define QUIET_AFTER 0.09f   // s
 #define SLEEP_SPEED 0.5e-3f // m/s
 #define SLEEP_TIME 0.024f   // s, below that speed
-#define SLEEP_AFTER 0.12f   // s since the bodies were last set free
+#define SLEEP_AFTER 0.12f   // s since the start
 #define WAKE_SPEED 5e-3f    // m/s, of a hit
 
 // --- contacts of the substep ---
@@ -337,11 +337,11 @@ static void all_wake(ty_pile* pile)
 
 // One check: counts calm ones in a row. While few bodies move the others may sleep; when all do, or none moves for
 // long, everybody wakes and the count begins again: rest is found with all of them awake.
-static void rest_check(ty_pile* pile, bool lost, bool may_sleep, int* calm)
+static void rest_check(ty_pile* pile, int* calm)
 {
     float rms, largest;
     pile_speeds(pile, &rms, &largest);
-    bool is_calm = rms < QUIET_RMS && largest < QUIET_MAX && !lost && pile->time > QUIET_AFTER;
+    bool is_calm = rms < QUIET_RMS && largest < QUIET_MAX && pile->time > QUIET_AFTER;
     int sleepers = sleepers_count(pile);
     *calm = is_calm ? *calm + 1 : 0;
     if (sleepers > 0 && (sleepers == pile->count || *calm >= QUIET_CHECKS))
@@ -351,30 +351,34 @@ static void rest_check(ty_pile* pile, bool lost, bool may_sleep, int* calm)
         *calm = 0;
     }
     else if (!is_calm)
-        pile->may_sleep = may_sleep;
+        pile->may_sleep = pile->time > SLEEP_AFTER;
 }
 
 ty_pile_end ty_pile_settle(ty_pile* pile, float max_seconds, ty_workers* workers, int* lost)
 {
     int interval = (int)(CHECK_TIME * pile->def.rate + 0.5f), steps = (int)(max_seconds * pile->def.rate);
-    int lost_count = 0, calm = 0;
+    int out = 0, calm = 0;
     ty_pile_end end = TY_PILE_TIME;
     for (int k = 1; k <= steps && end == TY_PILE_TIME; k++)
     {
         ty_pile_step(pile, workers);
         if (k % interval != 0)
             continue;
-        int out = lost_remove(pile);
-        lost_count += out;
-        rest_check(pile, out > 0, (float)k > SLEEP_AFTER * pile->def.rate, &calm);
+        out = lost_remove(pile);
+        rest_check(pile, &calm);
         if (ty_cancel_requested())
             end = TY_PILE_CANCELED;
+        else if (out > 0)
+            end = TY_PILE_LOST;
         else if (calm >= QUIET_CHECKS)
             end = TY_PILE_REST;
     }
-    pile->may_sleep = false;
-    all_wake(pile);
+    if (end != TY_PILE_LOST) // else one goes on with those asleep that are
+    {
+        pile->may_sleep = false;
+        all_wake(pile);
+    }
     if (lost)
-        *lost = lost_count;
+        *lost = out;
     return end;
 }

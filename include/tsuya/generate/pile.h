@@ -60,6 +60,7 @@ typedef enum ty_pile_end
 {
     TY_PILE_REST,     // three checks in a row below the bounds
     TY_PILE_TIME,     // max_seconds have passed
+    TY_PILE_LOST,     // bodies fell over the rim and were taken out: go on after putting others in
     TY_PILE_CANCELED, // ty_cancel_requested
 } ty_pile_end;
 
