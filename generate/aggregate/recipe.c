@@ -192,4 +192,4 @@ const ty_param_table* ty_aggregate_recipe_params(void)
     return &recipe_table;
 }
 
-const ty_generator ty_aggregate_generator = {"aggregate", "aggregate 1", &recipe_table, ty_aggregate_make};
+const ty_generator ty_aggregate_generator = {"aggregate", "aggregate 2", &recipe_table, ty_aggregate_make};

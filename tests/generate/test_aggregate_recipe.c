@@ -311,6 +311,37 @@ static void test_walls(void** state)
     ty_container_destroy(bowl);
 }
 
+// Of two grains dropped, one beside the bowl: it is taken out, the other comes to rest in the hollow.
+static void test_lost(void** state)
+{
+    (void)state;
+    ty_container_def def = ty_container_def_default();
+    ty_container* bowl;
+    ty_error error;
+    ty_grain grain;
+    ty_grain_def rice = ty_grain_def_default();
+    assert_int_equal(ty_container_create(&def, NULL, &bowl, &error), TY_OK);
+    assert_int_equal(ty_grain_init(&rice, (ty_seed){1}, 0, &grain, &error), TY_OK);
+    ty_pile_def pile_def = ty_pile_def_default();
+    pile_def.grains = &grain;
+    pile_def.grain_count = 1;
+    pile_def.container = bowl;
+    ty_pile* pile = ty_pile_create(&pile_def);
+    ty_body two[2] = {{.position = {0.07f, 0.05f, 0.0f}, .rotation = ty_quat_identity(), .scale = 1.0f},
+                      {.position = {0.0f, 0.02f, 0.01f}, .rotation = ty_quat_identity(), .scale = 1.0f}};
+    ty_pile_add(pile, two, 2);
+    int lost = 0;
+    assert_int_equal(ty_pile_settle(pile, 2.0f, NULL, &lost), TY_PILE_LOST);
+    assert_int_equal(lost, 1);
+    assert_int_equal(ty_pile_count(pile), 1);
+    assert_int_equal(ty_pile_settle(pile, 4.0f, NULL, &lost), TY_PILE_REST);
+    assert_int_equal(lost, 0);
+    assert_true(ty_container_holds(bowl, ty_pile_bodies(pile)[0].position));
+    ty_pile_destroy(pile);
+    ty_grain_term(&grain);
+    ty_container_destroy(bowl);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -318,6 +349,7 @@ int main(void)
         cmocka_unit_test(test_container_mirrors_shapes),
         cmocka_unit_test(test_impossible_wishes),
         cmocka_unit_test(test_walls),
+        cmocka_unit_test(test_lost),
         cmocka_unit_test(test_bowl),
         cmocka_unit_test(test_one_seed_one_result),
         cmocka_unit_test(test_sphere),
