@@ -162,7 +162,7 @@ static ty_rgb shape_along(const ty_light* light, const ty_ray* ray, float t_max,
     bool rectangle = light->kind == TY_LIGHT_RECTANGLE;
     float t;
     bool met = rectangle ? ty_light_rectangle_meet(light, ray, &t) : ty_light_sphere_meet(light, ray, &t);
-    if (!met || t < ray->t_min || t >= t_max)
+    if (!met || t < ray->t_min || t * TY_LIGHT_REACH >= t_max)
         return (ty_rgb){0};
     *covered = true;
     if (view->full)

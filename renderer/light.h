@@ -39,6 +39,10 @@ typedef struct ty_light_set
     bool has_shapes; // rectangles or spheres
 } ty_light_set;
 
+// Only what stands nearer than this share of the way to a light hides it, whichever sampling found it: a surface in the
+// lamp's own plane does not.
+#define TY_LIGHT_REACH 0.9999f
+
 // How a ray came to be, for the weight of the light it meets.
 typedef struct ty_light_view
 {

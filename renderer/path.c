@@ -23,8 +23,8 @@ static ty_rgb direct_light(const ty_integrator* in, const ty_bsdf* bsdf, const f
         return value;
     ty_ray shadow;
     ty_bsdf_spawn(bsdf, light.wi, u[3], &shadow);
-    if (light.distance < TY_FLOAT_MAX) // a little short, so that a surface in the lamp's own plane does not shade it
-        shadow.t_max = light.distance * 0.9999f;
+    if (light.distance < TY_FLOAT_MAX)
+        shadow.t_max = light.distance * TY_LIGHT_REACH;
     counters->shadow_rays++;
     if (ty_world_occluded(in->scene->world, &shadow))
         return (ty_rgb){0};

@@ -244,6 +244,24 @@ static void test_shadows(void** state)
     }
 }
 
+// A wall in a lamp's own plane takes none of its light, from whichever sampling.
+static void test_lamp_in_a_wall(void** state)
+{
+    (void)state;
+    const char* lamp =
+        "  - { type: rectangle, center: [-1, 1.5, 0], target: [0, 1.5, 0], size: [3, 3], radiance: 4 }\n";
+    const char* wall = "  - { mesh: floor, material: grey, translate: [-1, 1.5, 0], rotate: [0, 20, -90] }\n";
+    double mean[2], error[2];
+    for (int i = 0; i < 2; ++i)
+    {
+        picture p = render_floor(lamp, i ? wall : "");
+        mean_of(p.film, &mean[i], &error[i]);
+        ty_film_destroy(p.film);
+    }
+    if (fabs(mean[0] - mean[1]) > 1e-3 * mean[0])
+        fail_msg("radiance %g alone, %g in the wall", mean[0], mean[1]);
+}
+
 static picture render_yaml(const char* yaml, int samples)
 {
     ty_scene* scene = scene_load(yaml);
@@ -616,6 +634,7 @@ int main(void)
         cmocka_unit_test(test_threads_tiles_and_splits_change_nothing),
         cmocka_unit_test(test_irradiance_of_lights),
         cmocka_unit_test(test_shadows),
+        cmocka_unit_test(test_lamp_in_a_wall),
         cmocka_unit_test(test_roulette_is_unbiased),
         cmocka_unit_test(test_glass_absorbs_along_the_way),
         cmocka_unit_test(test_ambient_occlusion_knows_its_distance),
