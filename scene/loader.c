@@ -137,8 +137,8 @@ bool ty_loader_resolve(ty_loader* loader)
         return false;
     if (!loader->is_recipe)
         take_search(loader);
-    ty_override_sets(loader, false);
     ty_override_quick(loader);
+    ty_override_sets(loader, false);
     if (!loader->is_recipe)
         inline_recipes(loader);
     ty_override_check_defines(loader);

@@ -113,7 +113,7 @@ ty_node* ty_section(ty_loader* loader, const char* name,
 
 // override.c: `path=value` on the tree; early: those of vars and search, which others depend on, else the rest.
 void ty_override_sets(ty_loader* loader, bool early);
-void ty_override_quick(ty_loader* loader);     // half the film's size, 16 samples
+void ty_override_quick(ty_loader* loader);     // half the film's size, 16 samples; before the sets, which win
 void ty_override_variables(ty_loader* loader); // -D
 void ty_override_check_defines(ty_loader* loader);
 const char* ty_override_text(ty_arena* arena, const ty_scene_options* options); // as given, in one line

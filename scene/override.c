@@ -274,10 +274,10 @@ const char* ty_override_text(ty_arena* arena, const ty_scene_options* options)
     ty_text text = {0};
     for (int i = 0; i < options->variable_count; ++i)
         ty_text_format(&text, "%s-D %s", text.size ? " " : "", options->variables[i]);
-    for (int i = 0; i < options->set_count; ++i)
-        ty_text_format(&text, "%s--set %s", text.size ? " " : "", options->sets[i]);
     if (options->quick)
         ty_text_format(&text, "%s--quick", text.size ? " " : "");
+    for (int i = 0; i < options->set_count; ++i)
+        ty_text_format(&text, "%s--set %s", text.size ? " " : "", options->sets[i]);
     char* whole = ty_text_take(&text);
     const char* copy = ty_arena_string(arena, whole);
     ty_free(whole);

@@ -58,8 +58,8 @@ static void check_keys(ty_loader* loader, const ty_node* node, ty_light_kind kin
             if (ty_light_has_key(kind, table->params[row].name))
                 ty_text_format(&keys, "%s%s", keys.size ? ", " : "", table->params[row].name);
         ty_report(loader->errors, node->keys[i].place, TY_BAD_INPUT,
-                  "'%.100s' means nothing for a %s light, which has: %s", node->keys[i].text, ty_light_kind_name(kind),
-                  keys.data);
+                  "'%.100s' means nothing for %s %s light, which has: %s", node->keys[i].text,
+                  kind == TY_LIGHT_ENVIRONMENT ? "an" : "a", ty_light_kind_name(kind), keys.data);
         ty_text_term(&keys);
     }
 }

@@ -113,6 +113,13 @@ static void quick_is_an_override(void** state)
     fixture_write("scene.yaml", "tsuya: 1\n");
     assert_int_equal(fixture_load(&options), TY_OK);
     assert_int_equal(fixture_scene->film.size[0], 480);
+    // what is asked for in so many words wins
+    const char* const sets[] = {"film.size=[200, 100]", "render.samples=4"};
+    ty_scene_options precise = {.check_only = true, .quick = true, .sets = sets, .set_count = 2};
+    assert_int_equal(fixture_load(&precise), TY_OK);
+    assert_int_equal(fixture_scene->film.size[0], 200);
+    assert_int_equal(fixture_scene->render.samples, 4);
+    assert_string_equal(fixture_scene->overrides, "--quick --set film.size=[200, 100] --set render.samples=4");
     // mistakes stay visible
     fixture_write("scene.yaml", "tsuya: 1\nfilm: { size: [0, 2147483647] }\n");
     assert_int_equal(fixture_load(&options), TY_BAD_INPUT);

@@ -144,7 +144,7 @@ typedef struct ty_scene_options
     const char* isa;          // --isa or NULL
     const char* cache_folder; // NULL = $TSUYA_CACHE, else $XDG_CACHE_HOME/tsuya, else ~/.cache/tsuya
     bool sandbox;             // no path outside the scene's folder
-    bool quick;               // half size and 16 samples, as overrides after all others
+    bool quick;               // half size and 16 samples, as overrides before all others
     bool check_only;          // read and verify everything, but make no asset and build no tree
     ty_trace_path trace_path;
     ty_workers* workers; // for generators; NULL = the caller
