@@ -22,7 +22,7 @@ ty_status ty_usage(const ty_command* command, const char* format, ...)
 
 void ty_command_help(const ty_command* command)
 {
-    printf("tsuya %s %s\n\n%s\n\n", command->name, command->usage, command->summary);
+    printf("tsuya %s%s%s\n\n%s\n\n", command->name, command->usage[0] ? " " : "", command->usage, command->summary);
     for (int i = 0; i < command->option_count; i++)
     {
         const ty_option* option = &command->options[i];

@@ -31,6 +31,7 @@ static ty_status report(const ty_arguments* arguments, ty_scene* scene, ty_error
     ty_errors_log(errors);
     if (status == TY_OK)
     {
+        ty_scene_warn(scene);
         printf("%s: no mistakes; %d objects, %d materials, %d lights, %dx%d, %d samples\n", scene->path,
                scene->object_count, scene->material_count, scene->light_count, scene->film.size[0], scene->film.size[1],
                scene->render.samples);

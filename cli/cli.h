@@ -84,12 +84,15 @@ void ty_scene_arguments_term(ty_scene_arguments* arguments);
 // Loads and reports: on failure all mistakes have been logged and the status is the first one's.
 TY_CHECKED ty_status ty_scene_open(const char* path, const ty_scene_options* options, ty_scene** out);
 
+void ty_scene_warn(const ty_scene* scene); // of what is no mistake, but gives no picture
 void ty_errors_log(ty_error_list* errors); // logs and frees
 
 // Prints value as indented JSON on standard output and releases it.
 TY_CHECKED ty_status ty_json_print(json_t* value);
 // Writes it to a file, atomically, and releases it.
 TY_CHECKED ty_status ty_json_write(const char* path, json_t* value);
+// Whether a file can be written at path; leaves nothing there.
+TY_CHECKED ty_status ty_output_probe(const char* path, ty_error* error);
 // Flushes standard output and says whether everything arrived.
 TY_CHECKED ty_status ty_output_finish(void);
 

@@ -6,6 +6,7 @@
 #include <tsuya/base/file.h>
 #include <tsuya/base/log.h>
 #include <tsuya/base/suggest.h>
+#include <tsuya/base/workers.h>
 
 static const ty_command* const commands[] = {&ty_command_render, &ty_command_develop, &ty_command_merge,
                                              &ty_command_check,  &ty_command_info,    &ty_command_params,
@@ -23,10 +24,11 @@ static void print_help(void)
     {
         printf("  %-9s %s\n", commands[i]->name, commands[i]->summary);
     }
-    printf("\n`tsuya COMMAND --help` tells a command's options; results go to standard output, messages to standard "
-           "error.\nExit status: 0 done, 1 differs, 2 usage, 3 bad scene or recipe, 4 file or device error, 5 memory, "
-           "6 non-finite\nsamples, 7 not at rest, 70 internal error, 130/143 stopped by a signal.\n\n"
-           "example: tsuya render scenes/rice_bowl -o out/rice_bowl.exr --quick --develop\n");
+    printf(
+        "\n`tsuya COMMAND --help` tells a command's options; results go to standard output, messages to standard "
+        "error.\nExit status: 0 done, 2 usage, 3 bad scene or recipe, 4 file or device error, 5 memory, 6 non-finite "
+        "samples,\n7 not at rest, 70 internal error, 129/130/143 stopped by a signal.\n\n"
+        "example: tsuya render scenes/rice_bowl -o out/rice_bowl.exr --quick --develop\n");
 }
 
 static const ty_command* find_command(const char* name)
@@ -96,5 +98,7 @@ int main(int argc, char** argv)
     }
     ty_status status = run_command(argc, argv);
     ty_atomic_abort_all();
-    return (int)status;
+    // Whatever floor noticed the stop, the status names the signal.
+    bool stopped = status == TY_INTERRUPTED || status == TY_TERMINATED;
+    return stopped && ty_cancel_signal() > 0 ? 128 + ty_cancel_signal() : (int)status;
 }

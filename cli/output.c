@@ -13,11 +13,23 @@ enum
     JSON_FLAGS = JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(9)
 };
 
+ty_status ty_output_probe(const char* path, ty_error* error)
+{
+    ty_atomic_file file;
+    ty_status status = ty_atomic_begin(&file, path, error);
+    if (status == TY_OK)
+    {
+        ty_atomic_abort(&file);
+    }
+    return status;
+}
+
+// A reader that has seen enough (`| head`) needs no message.
 ty_status ty_output_finish(void)
 {
     if (fflush(stdout) != 0 || ferror(stdout))
     {
-        ty_log(TY_LOG_ERROR, "standard output: %s", strerror(errno));
+        ty_log(errno == EPIPE ? TY_LOG_DEBUG : TY_LOG_ERROR, "standard output: %s", strerror(errno));
         return TY_BAD_FILE;
     }
     return TY_OK;

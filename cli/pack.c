@@ -10,11 +10,22 @@ static ty_status run(const ty_arguments* arguments)
 {
     static ty_scene_arguments scene_arguments;
     const char* output = ty_argument_text(arguments, "output", NULL);
-    if (!output || strcmp(ty_path_extension(output), "glb") != 0)
+    if (!output)
     {
         return ty_usage(arguments->command, "where to? give -o OUT.glb");
     }
-    ty_status status = ty_scene_arguments_read(arguments, &scene_arguments);
+    if (strcmp(ty_path_extension(output), "glb") != 0)
+    {
+        return ty_usage(arguments->command, "the output '%s' must end in .glb", output);
+    }
+    ty_error error;
+    ty_status status = ty_output_probe(output, &error); // before minutes of packing
+    if (status != TY_OK)
+    {
+        ty_log_error(&error);
+        return status;
+    }
+    status = ty_scene_arguments_read(arguments, &scene_arguments);
     if (status != TY_OK)
     {
         return status;

@@ -2,8 +2,11 @@
 // `tsuya render`: a scene to an EXR, with a developed PNG on the way.
 #include "cli.h"
 #include "render_report.h"
+#include <errno.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <tsuya/base/file.h>
 #include <tsuya/base/log.h>
@@ -25,12 +28,28 @@ typedef struct render_job
 
 // --- the command line ---
 
+// Exactly count whole numbers with a separator between them; none wraps around.
+static bool parse_numbers(const char* text, char separator, int count, int* out)
+{
+    for (int i = 0; i < count; i++)
+    {
+        char* end;
+        errno = 0;
+        long value = strtol(text, &end, 10);
+        if (end == text || errno || value < 0 || value >= INT_MAX || *end != (i + 1 < count ? separator : '\0'))
+        {
+            return false;
+        }
+        out[i] = (int)value;
+        text = end + 1;
+    }
+    return true;
+}
+
 static ty_status read_pair(const ty_arguments* arguments, const char* name, char separator, int low, int out[2])
 {
     const char* text = ty_argument_text(arguments, name, "");
-    char middle, rest;
-    if (sscanf(text, "%d%c%d%c", &out[0], &middle, &out[1], &rest) != 3 || middle != separator || out[0] < low ||
-        out[1] < low)
+    if (!parse_numbers(text, separator, 2, out) || out[0] < low || out[1] < low)
     {
         return ty_usage(arguments->command, "--%s: '%s' is not of the form A%cB with numbers of at least %d", name,
                         text, separator, low);
@@ -44,7 +63,7 @@ static ty_status read_number_overrides(const ty_arguments* arguments, ty_scene_a
     ty_status status = TY_OK;
     if (ty_argument_has(arguments, "spp"))
     {
-        status = ty_argument_int(arguments, "spp", 1, 65536, &value);
+        status = ty_argument_int(arguments, "spp", 1, 1048576, &value);
         if (status == TY_OK)
         {
             ty_scene_arguments_set(scene, "render.samples=%ld", value);
@@ -61,6 +80,20 @@ static ty_status read_number_overrides(const ty_arguments* arguments, ty_scene_a
     return status;
 }
 
+static ty_status check_isa(const ty_arguments* arguments)
+{
+    static const char* const names[] = {"sse2", "sse4.2", "avx", "avx2", "avx512"};
+    const char* text = ty_argument_text(arguments, "isa", names[0]);
+    for (int i = 0; i < TY_PARAM_COUNT(names); i++)
+    {
+        if (strcmp(text, names[i]) == 0)
+        {
+            return TY_OK;
+        }
+    }
+    return ty_usage(arguments->command, "--isa: '%s' is none of sse2, sse4.2, avx, avx2, avx512", text);
+}
+
 // The short forms of --set, so that they are recorded like any other override.
 static ty_status read_overrides(const ty_arguments* arguments, ty_scene_arguments* scene)
 {
@@ -71,7 +104,8 @@ static ty_status read_overrides(const ty_arguments* arguments, ty_scene_argument
         return ty_usage(arguments->command, "--trace: '%s' is neither fast nor reference", trace);
     }
     scene->options.trace_path = trace[0] == 'f' ? TY_TRACE_FAST : TY_TRACE_REFERENCE;
-    ty_status status = read_number_overrides(arguments, scene);
+    ty_status status = check_isa(arguments);
+    status = status == TY_OK ? read_number_overrides(arguments, scene) : status;
     if (status == TY_OK && ty_argument_has(arguments, "size"))
     {
         int size[2];
@@ -127,13 +161,11 @@ static ty_status read_crop(const ty_arguments* arguments, const int size[2], int
     crop[2] = size[0] - 1;
     crop[3] = size[1] - 1;
     const char* text = ty_argument_text(arguments, "crop", NULL);
-    char rest;
     if (!text)
     {
         return TY_OK;
     }
-    bool four = sscanf(text, "%d,%d,%d,%d%c", &crop[0], &crop[1], &crop[2], &crop[3], &rest) == 4;
-    if (!four || crop[0] < 0 || crop[1] < 0 || crop[2] >= size[0] || crop[3] >= size[1] || crop[0] > crop[2] ||
+    if (!parse_numbers(text, ',', 4, crop) || crop[2] >= size[0] || crop[3] >= size[1] || crop[0] > crop[2] ||
         crop[1] > crop[3])
     {
         return ty_usage(arguments->command, "--crop: '%s' is not x0,y0,x1,y1 (inclusive) within 0,0,%d,%d", text,
@@ -331,30 +363,29 @@ static ty_status run_job(render_job* job, const ty_scene* scene, ty_workers* wor
         return status != TY_OK ? status : rendered;
     }
     status = ty_render_report(scene, job->arguments, &stats, stats.samples_done > 0 ? job->output : NULL, job->preview);
+    if (job->write.partial)
+    {
+        ty_log(TY_LOG_WARNING, "%s after %d of %d samples; the picture is marked partial",
+               stopped ? "stopped by a signal" : "the time is over", stats.samples_done,
+               job->setup.sample_end - job->setup.sample_begin);
+    }
     if (stopped)
     {
-        ty_log(TY_LOG_WARNING, "stopped by a signal after %d samples; the picture is marked partial",
-               stats.samples_done);
         return rendered;
     }
     return status == TY_OK ? judge_samples(job, &stats) : status;
 }
 
-// Both outputs must be writable before an hour of rendering.
+// Every output must be writable before an hour of rendering.
 static ty_status probe_outputs(const render_job* job, ty_error* error)
 {
-    const char* const paths[2] = {job->output, job->preview};
-    for (int i = 0; i < 2 && paths[i][0]; i++)
+    const char* const paths[] = {job->output, job->preview, ty_argument_text(job->arguments, "stats", "")};
+    ty_status status = TY_OK;
+    for (int i = 0; i < TY_PARAM_COUNT(paths) && status == TY_OK; i++)
     {
-        ty_atomic_file file;
-        ty_status status = ty_atomic_begin(&file, paths[i], error);
-        if (status != TY_OK)
-        {
-            return status;
-        }
-        ty_atomic_abort(&file);
+        status = paths[i][0] ? ty_output_probe(paths[i], error) : TY_OK;
     }
-    return TY_OK;
+    return status;
 }
 
 static ty_status render_scene(render_job* job, ty_scene_arguments* scene_arguments)
@@ -431,7 +462,7 @@ static const ty_option options[] = {
     {"output", 'o', "OUT.exr", "the picture (default: the scene's name)"},
     {"develop", 0, NULL, "also a PNG beside it, from early on"},
     TY_SCENE_OPTIONS,
-    {"quick", 'q', NULL, "half size, 16 samples"},
+    {"quick", 'q', NULL, "half size, 16 samples, where --size, --spp and --set say nothing"},
     {"spp", 0, "N", "samples a pixel"},
     {"samples", 0, "A-B", "only these sample indices: a part for `tsuya merge`"},
     {"size", 0, "WxH", "picture size"},
@@ -441,7 +472,7 @@ static const ty_option options[] = {
     {"integrator", 0, "X", "path, albedo, normal, curvature, ao"},
     {"time-limit", 0, "SECONDS", "stop after the pass that exceeds it"},
     {"trace", 0, "PATH", "fast, or reference: plain Embree instances"},
-    {"isa", 0, "NAME", "pin the CPU kernels: sse4.2, avx, avx2, avx512"},
+    {"isa", 0, "NAME", "pin the CPU kernels: sse2, sse4.2, avx, avx2, avx512"},
     {"stats", 0, "F.json", "statistics as JSON"},
     {"progress", 0, "M", "auto, bar, lines, none"},
     {"json", 0, NULL, "the result as JSON on standard output"},

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <tsuya/base/log.h>
+#include <tsuya/shading/material.h>
 
 void ty_scene_arguments_set(ty_scene_arguments* arguments, const char* format, ...)
 {
@@ -75,10 +76,31 @@ void ty_errors_log(ty_error_list* errors)
     ty_error_list_term(errors);
 }
 
+void ty_scene_warn(const ty_scene* scene)
+{
+    bool lit = scene->light_count > 0 || scene->render.integrator != TY_INTEGRATOR_PATH;
+    for (int i = 0; i < scene->material_count && !lit; i++)
+    {
+        lit = ty_material_is_emissive(scene->materials[i]);
+    }
+    if (scene->object_count == 0)
+    {
+        ty_log(TY_LOG_WARNING, "%s: there are no objects", scene->path);
+    }
+    if (!lit)
+    {
+        ty_log(TY_LOG_WARNING, "%s: no lights, and no material emits: the picture will be black", scene->path);
+    }
+}
+
 ty_status ty_scene_open(const char* path, const ty_scene_options* options, ty_scene** out)
 {
     ty_error_list errors = {0};
     ty_status status = ty_scene_load(path, options, out, &errors);
     ty_errors_log(&errors);
+    if (status == TY_OK)
+    {
+        ty_scene_warn(*out);
+    }
     return status;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SIGINT and SIGTERM ask for a clean stop; a second one leaves at once without temporaries.
+// SIGINT, SIGTERM and SIGHUP ask for a clean stop; a second one leaves at once without temporaries.
 #include "cli.h"
 #include <signal.h>
 #include <string.h>
@@ -26,6 +26,11 @@ void ty_signals_install(void)
     action.sa_flags = SA_RESTART;
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    struct sigaction inherited;
+    if (sigaction(SIGHUP, NULL, &inherited) == 0 && inherited.sa_handler != SIG_IGN) // nohup stays nohup
+    {
+        sigaction(SIGHUP, &action, NULL);
+    }
     // A closed pipe or a file-size limit is a write error with its own message, not a death.
     action.sa_handler = SIG_IGN;
     sigaction(SIGPIPE, &action, NULL);

@@ -125,11 +125,29 @@ base >scene.yaml
 expect 4 "$tsuya" render scene.yaml -o nowhere/out.exr
 says "nowhere"
 expect 4 "$tsuya" render scene.yaml -o /proc/out.exr
+expect 4 "$tsuya" render scene.yaml -o out.exr --stats nowhere/s.json
+absent out.exr
+printf 'tsuya: 1\nkind: aggregate\nfill: { count: 20 }\n' >recipe.yaml
+expect 4 timeout 20 "$tsuya" pack recipe.yaml -o nowhere/heap.glb
+grep -q aggregate err.txt && fail "packed before the output was looked at"
 mkdir folder.exr
 expect 4 "$tsuya" render scene.yaml -o folder.exr
 cp good.exr kept.exr
 expect 4 bash -c 'ulimit -f 1; exec "$0" render scene.yaml -o kept.exr --size 256x144 --spp 1' "$tsuya"
 same good.exr kept.exr
+
+# Nothing to see is no mistake, but is said.
+edited 's/^lights:/lights: []/; s/^  - \{ type.*//'
+expect 0 "$tsuya" check scene.yaml
+says "no lights"
+edited 's/^objects:/objects: []/; s/^  - \{ mesh.*//'
+expect 0 "$tsuya" check scene.yaml
+says "no objects"
+base >scene.yaml
+
+# A reader that leaves early needs no message.
+"$tsuya" params 2>err.txt | true
+[ ! -s err.txt ] || fail "a message about a closed pipe"
 
 # The command line.
 expect 2 "$tsuya"
@@ -143,6 +161,14 @@ expect 2 "$tsuya" render scene.yaml --size 10
 expect 2 "$tsuya" render scene.yaml --crop 0,0,99,99
 expect 2 "$tsuya" render scene.yaml --samples 3-9
 expect 2 "$tsuya" render scene.yaml -o out.png
+for wrapped in "--size 4294967297x2" "--crop 4294967296,0,4294967297,2" "--samples 4294967296-4294967297" "--isa mmx"; do
+    # shellcheck disable=SC2086
+    expect 2 "$tsuya" render scene.yaml -o out.exr $wrapped
+done
+expect 2 "$tsuya" pack recipe.yaml -o out.exr
+says "must end in .glb"
+expect 0 "$tsuya" render scene.yaml -o precise.exr --quick --spp 3
+says "3 samples"
 expect 3 "$tsuya" render scene.yaml --set render.sampels=3
 says "did you mean"
 expect 3 "$tsuya" render scene.yaml -D wetness=3
