@@ -60,6 +60,26 @@ static void add_table(ty_text* out, const ty_param_table* table)
     ty_free(def);
 }
 
+static const char FILES[] =
+    "\n## A scene file\n\n"
+    "| key | accepted | meaning |\n|---|---|---|\n"
+    "| `tsuya` | `1` | the version of the format, *required* |\n"
+    "| `include` | a file or a list of files | read first; mappings are merged, else this file wins (lists too) |\n"
+    "| `search` | a list of folders | where files are looked for after the folder of the file that names them |\n"
+    "| `vars` | name: value | what `$name` stands for; `-D name=value` changes it |\n"
+    "| `ocio` | the name of a file | OpenColorIO configuration |\n"
+    "| `film`, `camera`, `render` | mappings | below |\n"
+    "| `assets` | name: `asset.mesh`, `asset.shape`, `asset.texture` or `asset.aggregate` | what there is |\n"
+    "| `materials` | name: { model: surface or cdrf, ... } | what it is made of |\n"
+    "| `objects`, `lights` | lists of `object`, `light` | what is seen |\n\n"
+    "A recipe has `tsuya: 1`, `kind: aggregate`, `vars` and the keys of the table `aggregate`.\n\n"
+    "`--set` takes the path of a value, with dots; an entry of a list goes by its number from 0 or by its name: "
+    "`--set lights.0.radiance=3`, `--set objects.bowl.material=glaze`.\n\n"
+    "An input of a material is `value * (offset + scale * x)`, where x is what the texture or the instance's attribute "
+    "gives; scale is 1 and offset 0 if not written. `texture` names an asset or a file. Packed aggregates bring the "
+    "attributes `moisture` and `tint` (-1..1 around the mean) and `depth` (metres under the surface of the heap); "
+    "`.ply` points bring every further property by its name.\n";
+
 char* ty_params_markdown(void)
 {
     int count = 0;
@@ -70,6 +90,7 @@ char* ty_params_markdown(void)
                 "Written by `tsuya params --markdown` from the tables that the program reads files with.\n\n"
                 "Units: metres unless a row says otherwise; angles in degrees. Colours are linear ACEScg unless a "
                 "space is named; `'#rrggbb'` is sRGB. `$name` as a whole value is replaced by the variable `name`.\n");
+    ty_text_add(&out, FILES);
     for (int i = 0; i < count; ++i)
         add_table(&out, tables[i]);
     return ty_text_take(&out);
