@@ -313,6 +313,12 @@ static void damaged_containers(void** state)
     d[15] = 0x7f;
     assert_refused(d, good.size, "JSON chunk claims");
     d[15] = 0;
+    uint32_t json_size = (uint32_t)(d[12] | d[13] << 8);
+    size_t bin = 20 + json_size;
+    uint8_t low = d[bin];
+    d[bin] = (uint8_t)(low + 4); // 4 bytes more than there are
+    assert_refused(d, good.size, "BIN chunk claims");
+    d[bin] = low;
     d[16] = 'B';
     assert_refused(d, good.size, "expected a JSON chunk");
     d[16] = 'J';
@@ -347,7 +353,7 @@ static void damaged_json(void** state)
         {"\"POSITION\":", "\"POSITIAN\":", "meshes[0].primitives[0] has no POSITION"},
         {"\"bufferView\":3,", "\"bufferView\":99", "JSON chunk"},
         {"\"count\":42", "\"count\":-2", "count is not a positive"},
-        {"\"count\":42", "\"count\":99", "accessors[0]: 99 elements do not fit"},
+        {"\"count\":42", "\"count\":43", "accessors[0]: 43 elements do not fit"},
         {"\"count\":42", "\"count\":41", "no accessor of 41 elements"},
         {"\"componentType\":5126", "\"componentType\":5127", "componentType"},
         {"\"type\":\"VEC3\"", "\"type\":\"VEC9\"", "accessors[0].type"},

@@ -121,6 +121,7 @@ static void faults_are_named(void** state)
         {"ply\nformat ascii 1.0\nwhat\nend_header\n", "not a PLY header line", 3},
         {HEADER("ascii", "3") "property float x\n" FACES("1") TRIANGLE, "twice", 8},
         {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n" FACES("1") "0\n3 0 0 0\n", "x, y and z", 8},
+        {HEADER("ascii", "100") FACES("1") TRIANGLE, "cannot be", 11},
         {HEADER("ascii", "180000000") FACES("1") TRIANGLE, "cannot be", 11},
         {HEADER("ascii", "3") FACES("180000000") TRIANGLE "3 0 1 2\n", "cannot be", 13},
         {HEADER("ascii", "0") FACES("0"), "no vertices", 11},

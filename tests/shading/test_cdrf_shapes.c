@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cdrf` on ellipsoids, tori, slabs and heaps: against random walks, energy, depth fields, and the rays that leave.
+#include "../../shading/depth_field.h"
 #include "stage.h"
 #include <tsuya/shading/sampling.h>
 
@@ -315,6 +316,60 @@ static void test_probe_on_a_plane(void** state)
     stage_term(&s);
 }
 
+// Length of the normal's line inside the ellipsoid at vertex i, by formula.
+static double thickness_at(const ty_mesh* mesh, uint32_t i)
+{
+    ty_vec3 v = mesh->positions[i];
+    double p[3] = {(double)v.x, (double)v.y, (double)v.z}, n[3], length = 0;
+    for (int k = 0; k < 3; k++)
+    {
+        n[k] = -p[k] / axes[k] / axes[k];
+        length += n[k] * n[k];
+    }
+    for (int k = 0; k < 3; k++)
+        n[k] /= sqrt(length);
+    return exit_distance(p, n);
+}
+
+static void test_thickness_is_smoothed(void** state)
+{
+    (void)state;
+    // Against the definition, all vertices by all: the mean of 1/D under a Gaussian of width .35 * 3 V/A, at most D.
+    stage s;
+    ty_shape_def shape = shape_of(TY_SHAPE_ELLIPSOID, (float)axes[0], (float)axes[1], (float)axes[2]);
+    shape.divisions = 64;
+    stage_init_one(&s, &shape);
+    const ty_mesh* mesh = s.mesh;
+    const ty_mesh_topology* topology = ty_world_topology(s.world, 0);
+    double* area = TY_ALLOC(double, mesh->vertex_count);
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+    {
+        const uint32_t* v = mesh->triangles[t];
+        ty_vec3 a = mesh->positions[v[0]];
+        ty_vec3 cross = ty_cross(ty_sub(mesh->positions[v[1]], a), ty_sub(mesh->positions[v[2]], a));
+        for (int k = 0; k < 3; k++)
+            area[v[k]] += (double)ty_length(cross) / 6;
+    }
+    double width = 0.35 * 3 * topology->volume / topology->area, changed = 0;
+    for (uint32_t i = 0; i < mesh->vertex_count; i += 7)
+    {
+        double sum = 0, weight = 0, plain = thickness_at(mesh, i);
+        for (uint32_t k = 0; k < mesh->vertex_count; k++)
+        {
+            double d = (double)ty_length(ty_sub(mesh->positions[i], mesh->positions[k])) / width;
+            double w = d < 3 ? area[k] * exp(-0.5 * d * d) : 0;
+            sum += w / thickness_at(mesh, k);
+            weight += w;
+        }
+        double expected = fmin(plain, weight / sum);
+        assert_near((double)s.field->depth[i] / expected, 1.0, 0.02);
+        changed = fmax(changed, 1 - expected / plain);
+    }
+    assert_true(changed > 0.1);
+    ty_free(area);
+    stage_term(&s);
+}
+
 static void test_depth_field_without_memory(void** state)
 {
     (void)state;
@@ -423,6 +478,7 @@ int main(void)
         cmocka_unit_test(test_slab_transmits),
         cmocka_unit_test(test_open_mesh_has_a_field),
         cmocka_unit_test(test_probe_on_a_plane),
+        cmocka_unit_test(test_thickness_is_smoothed),
         cmocka_unit_test(test_depth_field_without_memory),
         cmocka_unit_test(test_spawned_rays),
         cmocka_unit_test(test_glass_ball_vanishes),
