@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface at a hit: position, normals, tangent, uv; and where a ray that leaves it may begin.
+// The surface at a hit: position, normals, uv; and where a ray that leaves it may begin.
 #include "trace_world.h"
 
 typedef struct corners
@@ -18,44 +18,6 @@ static ty_vec3 blend3(const corners* c, const ty_vec3* field)
 {
     ty_vec3 sum = ty_mul(field[c->v[0]], c->w[0]);
     return ty_mad(ty_mad(sum, field[c->v[1]], c->w[1]), field[c->v[2]], c->w[2]);
-}
-
-// Along growing u of the uv map, from the triangle's own linear map. Zero when the uv are missing or degenerate.
-static ty_vec3 uv_tangent(const corners* c)
-{
-    if (!c->mesh->uvs)
-        return (ty_vec3){0.0f, 0.0f, 0.0f};
-    const ty_vec3* p = c->mesh->positions;
-    const ty_vec2* uv = c->mesh->uvs;
-    ty_vec3 e1 = ty_sub(p[c->v[1]], p[c->v[0]]), e2 = ty_sub(p[c->v[2]], p[c->v[0]]);
-    float u1 = uv[c->v[1]].x - uv[c->v[0]].x, v1 = uv[c->v[1]].y - uv[c->v[0]].y;
-    float u2 = uv[c->v[2]].x - uv[c->v[0]].x, v2 = uv[c->v[2]].y - uv[c->v[0]].y;
-    float det = u1 * v2 - u2 * v1;
-    // Only the direction matters: the sign of the determinant serves for its inverse.
-    return det == 0.0f ? (ty_vec3){0.0f, 0.0f, 0.0f}
-                       : ty_mul(ty_sub(ty_mul(e1, v2), ty_mul(e2, v1)), copysignf(1.0f, det));
-}
-
-// Principal directions are lines: the nearest vertex's is taken, since opposite signs would cancel in a blend.
-static ty_vec3 curvature_tangent(const corners* c)
-{
-    if (!c->mesh->direction_1)
-        return (ty_vec3){0.0f, 0.0f, 0.0f};
-    int nearest = c->w[1] > c->w[0] ? 1 : 0;
-    nearest = c->w[2] > c->w[nearest] ? 2 : nearest;
-    return c->mesh->direction_1[c->v[nearest]];
-}
-
-// The part of the mapped tangent perpendicular to ns, unit; false when hardly anything is left of it.
-static bool use_tangent(const ty_affine* to_world, ty_vec3 local, ty_vec3 ns, ty_vec3* dpdu)
-{
-    ty_vec3 mapped = ty_normalize(ty_map_vector(to_world, ty_normalize(local)));
-    ty_vec3 across = ty_mad(mapped, ns, -ty_dot(mapped, ns));
-    if (!(ty_length_sqr(across) > 1e-6f))
-        return false;
-    across = ty_normalize(across);
-    *dpdu = ty_normalize(ty_mad(across, ns, -ty_dot(across, ns)));
-    return true;
 }
 
 void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point* out)
@@ -82,9 +44,6 @@ void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point
                               .triangle = hit->triangle,
                               .u = hit->u,
                               .v = hit->v};
-    if (!use_tangent(to_world, uv_tangent(&c), ns, &out->dpdu) &&
-        !use_tangent(to_world, curvature_tangent(&c), ns, &out->dpdu))
-        out->dpdu = ty_frame_from_normal(ns).t;
     if (mesh->uvs)
     {
         ty_vec2 a = mesh->uvs[c.v[0]], b = mesh->uvs[c.v[1]], d = mesh->uvs[c.v[2]];

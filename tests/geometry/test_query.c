@@ -203,8 +203,7 @@ static void surface_of_a_stretched_sphere(void** state)
         assert_true(ty_dot(exact, q.ng) > 0.99f);
         assert_true(ty_dot(q.ng, ray.direction) < 0.0f);
         assert_true(ty_dot(q.ng, q.ns) > 0.0f);
-        assert_true(fabsf(ty_length(q.ns) - 1.0f) < 1e-5f && fabsf(ty_length(q.dpdu) - 1.0f) < 1e-5f);
-        assert_true(fabsf(ty_dot(q.ns, q.dpdu)) < 1e-5f);
+        assert_true(fabsf(ty_length(q.ns) - 1.0f) < 1e-5f);
     }
 }
 
@@ -243,7 +242,7 @@ static void one_instance_alone(void** state)
     assert_true(fabsf(hit.t - 0.5f) < 1e-4f);
 }
 
-static void tangent_follows_the_uv(void** state)
+static void uv_and_fields_are_linear(void** state)
 {
     (void)state;
     ty_mesh* quad = ty_mesh_create(4, 2);
@@ -271,7 +270,6 @@ static void tangent_follows_the_uv(void** state)
     ty_surface_point q;
     assert_true(ty_world_intersect(s.world, &ray, &hit));
     ty_world_surface(s.world, &hit, &q);
-    assert_true(ty_dot(q.dpdu, ty_normalize(ty_neg(map.z))) > 0.9999f);
     assert_true(fabsf(q.uv.x - 0.6f) < 1e-4f && fabsf(q.uv.y - 0.3f) < 1e-4f);
     float field[4] = {0.0f, 1.0f, 2.0f, 3.0f};
     assert_true(fabsf(ty_world_interpolate(s.world, &q, field) - (0.3f + 2.0f * 0.4f)) < 1e-4f);
@@ -321,11 +319,11 @@ static void offset_clears_the_surface(void** state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closest_on_a_sphere),    cmocka_unit_test(closest_on_a_torus),
-        cmocka_unit_test(closest_is_the_least),   cmocka_unit_test(inward_normals_are_turned),
-        cmocka_unit_test(inside_by_formula),      cmocka_unit_test(surface_of_a_stretched_sphere),
-        cmocka_unit_test(mirrored_stays_outward), cmocka_unit_test(one_instance_alone),
-        cmocka_unit_test(tangent_follows_the_uv), cmocka_unit_test(offset_clears_the_surface),
+        cmocka_unit_test(closest_on_a_sphere),      cmocka_unit_test(closest_on_a_torus),
+        cmocka_unit_test(closest_is_the_least),     cmocka_unit_test(inward_normals_are_turned),
+        cmocka_unit_test(inside_by_formula),        cmocka_unit_test(surface_of_a_stretched_sphere),
+        cmocka_unit_test(mirrored_stays_outward),   cmocka_unit_test(one_instance_alone),
+        cmocka_unit_test(uv_and_fields_are_linear), cmocka_unit_test(offset_clears_the_surface),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

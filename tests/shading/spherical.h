@@ -135,7 +135,7 @@ static inline ty_rgb mean_weight(const ty_bsdf* bsdf, int n)
 // A point of a plane with normal +z, seen at an angle (radians) from it; from below where the cosine is negative.
 static inline ty_bsdf bsdf_at(const ty_material* material, double angle)
 {
-    ty_surface_point p = {.ng = {0, 0, 1}, .ns = {0, 0, 1}, .dpdu = {1, 0, 0}};
+    ty_surface_point p = {.ng = {0, 0, 1}, .ns = {0, 0, 1}};
     ty_bsdf b;
     ty_material_prepare(material, NULL, &p, ty_vec3_make((float)sin(angle), 0, (float)cos(angle)), &b);
     return b;

@@ -109,7 +109,6 @@ typedef struct ty_surface_point
     ty_vec3 position; // on the triangle, by barycentric interpolation (exact to rounding, whatever the ray's length)
     ty_vec3 ng;       // unit geometric normal, outward (as the triangle winds)
     ty_vec3 ns;       // unit shading normal, on the same side as ng
-    ty_vec3 dpdu;     // unit tangent along u of the uv map, or along curvature_1, or any; perpendicular to ns
     ty_vec2 uv;       // (0,0) without uv
     uint32_t object, instance, triangle;
     float u, v; // barycentric
