@@ -20,6 +20,22 @@ static ty_vec3 blend3(const corners* c, const ty_vec3* field)
     return ty_mad(ty_mad(sum, field[c->v[1]], c->w[1]), field[c->v[2]], c->w[2]);
 }
 
+static ty_vec3 magnitude(ty_vec3 v)
+{
+    return (ty_vec3){fabsf(v.x), fabsf(v.y), fabsf(v.z)};
+}
+
+// Largest coordinate of the sums that give the position: its rounding error, and that of the ray's own map, grows with
+// it.
+static float reach(const corners* c, const ty_affine* m)
+{
+    const ty_vec3* p = c->mesh->positions;
+    ty_vec3 far = ty_max3(magnitude(p[c->v[0]]), ty_max3(magnitude(p[c->v[1]]), magnitude(p[c->v[2]])));
+    ty_vec3 sum = ty_mad(magnitude(m->t), magnitude(m->x), far.x);
+    sum = ty_mad(ty_mad(sum, magnitude(m->y), far.y), magnitude(m->z), far.z);
+    return ty_max(sum.x, ty_max(sum.y, sum.z));
+}
+
 void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point* out)
 {
     const ty_mesh* mesh = ty_world_mesh(world, hit->object, hit->instance);
@@ -39,6 +55,7 @@ void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point
     *out = (ty_surface_point){.position = ty_map_point(to_world, blend3(&c, mesh->positions)),
                               .ng = ng,
                               .ns = ns,
+                              .reach = reach(&c, to_world),
                               .object = hit->object,
                               .instance = hit->instance,
                               .triangle = hit->triangle,
@@ -57,11 +74,11 @@ float ty_world_interpolate(const ty_world* world, const ty_surface_point* point,
     return vertex_field[c.v[0]] * c.w[0] + vertex_field[c.v[1]] * c.w[1] + vertex_field[c.v[2]] * c.w[2];
 }
 
-// C. Waechter and N. Binder 2019, "A fast and robust method for avoiding self-intersection", Ray Tracing Gems ch. 6:
-// about 256 units in the last place. Here of the largest coordinate, since under a rotated instance the error of every
-// axis comes from all of them; and the floor near the origin is set for scenes of millimetres (half a micrometre).
-ty_vec3 ty_offset_origin(ty_vec3 p, ty_vec3 n)
+// Units in the last place as in C. Waechter and N. Binder 2019, "A fast and robust method for avoiding
+// self-intersection", Ray Tracing Gems ch. 6, but of all that went into the position: under a rotated instance and on a
+// large triangle the error of every axis comes from there. 32 of them; rays begin to fail at 2. The floor is set for
+// scenes of millimetres (half a micrometre).
+ty_vec3 ty_offset_origin(const ty_surface_point* p, ty_vec3 n)
 {
-    float reach = ty_max(ty_max(fabsf(p.x), fabsf(p.y)), ty_max(fabsf(p.z), 0x1p-6f));
-    return ty_mad(p, n, reach * 0x1p-15f);
+    return ty_mad(p->position, n, ty_max(p->reach * 0x1p-18f, 0x1p-21f));
 }

@@ -35,7 +35,7 @@ static float ambient_occlusion(const ty_integrator* in, const ty_sampler* sample
     ty_vec3 ng = ty_dot(bsdf->point.ng, bsdf->wo) < 0.0f ? ty_neg(bsdf->point.ng) : bsdf->point.ng;
     if (!(ty_dot(wi, ng) > 0.0f))
         return 0.0f;
-    ty_ray ray = {.origin = ty_offset_origin(bsdf->point.position, ng),
+    ty_ray ray = {.origin = ty_offset_origin(&bsdf->point, ng),
                   .direction = wi,
                   .t_max = in->scene->render.ao_distance,
                   .skip_object = TY_NONE,

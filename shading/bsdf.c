@@ -90,7 +90,7 @@ void ty_bsdf_spawn(const ty_bsdf* bsdf, ty_vec3 wi, float u, ty_ray* ray)
 {
     const ty_surface_point* p = &bsdf->point;
     *ray = (ty_ray){
-        .origin = ty_offset_origin(p->position, ty_dot(wi, p->ng) >= 0.0f ? p->ng : ty_neg(p->ng)),
+        .origin = ty_offset_origin(p, ty_dot(wi, p->ng) >= 0.0f ? p->ng : ty_neg(p->ng)),
         .direction = wi,
         .t_max = TY_FLOAT_MAX,
         .flags = TY_RAY_FRONT_ONLY,

@@ -277,14 +277,15 @@ static void uv_and_fields_are_linear(void** state)
     ty_mesh_destroy(quad);
 }
 
-// Rays that leave grains of 3 mm at 2 cm, 20 cm and 2 m from the origin do not meet the grain they stand on.
+// Rays that leave grains of 3 mm at 2 cm to 200 m from the origin do not meet the grain they stand on, and begin nearer
+// to it than its neighbours are.
 static void offset_clears_the_surface(void** state)
 {
     const stage* s = *state;
     ty_rng rng = ty_rng_make((ty_seed){6}, 0, 0);
-    for (int far = 0; far < 3; far++)
+    for (int far = 0; far < 5; far++)
     {
-        float distance = far == 0 ? 0.02f : far == 1 ? 0.2f : 2.0f;
+        float distance = 0.02f * ty_pow(10.0f, (float)far);
         ty_world* world = NULL;
         ty_error error;
         ty_world_def def = ty_world_def_default();
@@ -303,7 +304,8 @@ static void offset_clears_the_surface(void** state)
             if (!ty_world_intersect(world, &ray, &hit))
                 continue;
             ty_world_surface(world, &hit, &q);
-            ray.origin = ty_offset_origin(q.position, q.ng);
+            ray.origin = ty_offset_origin(&q, q.ng);
+            assert_true(ty_length(ty_sub(ray.origin, q.position)) < ty_max(1e-6f, 1e-5f * distance));
             ray.direction = random_direction(&rng);
             if (ty_dot(ray.direction, q.ng) < 0.0f)
                 ray.direction = ty_neg(ray.direction);
@@ -316,14 +318,63 @@ static void offset_clears_the_surface(void** state)
     }
 }
 
+// Where a tilted triangle of 100 m passes the origin, the coordinates of a hit are small and their errors are not.
+static void offset_clears_a_large_triangle(void** state)
+{
+    (void)state;
+    ty_mesh* mesh = ty_mesh_create(3, 1);
+    ty_vec3 n = ty_normalize((ty_vec3){0.3f, 1.0f, -0.2f});
+    ty_frame frame = ty_frame_from_normal(n);
+    const float corners[3][2] = {{-47.0f, -31.0f}, {59.0f, -23.0f}, {-13.0f, 61.0f}};
+    for (int i = 0; i < 3; i++)
+    {
+        mesh->positions[i] = ty_to_world(frame, (ty_vec3){corners[i][0], corners[i][1], 0.0f});
+        mesh->normals[i] = n;
+    }
+    set_triangle(mesh, 0, 0, 1, 2);
+    ty_mesh_compute_bounds(mesh);
+    ty_world* world = NULL;
+    ty_error error;
+    ty_world_def def = ty_world_def_default();
+    uint32_t prototype;
+    assert_int_equal(ty_world_create(&def, &world, &error), TY_OK);
+    add(world, mesh, ty_affine_identity(), &prototype);
+    assert_int_equal(ty_world_commit(world, &error), TY_OK);
+    ty_rng rng = ty_rng_make((ty_seed){7}, 0, 0);
+    int again = 0;
+    for (int i = 0; i < 20000; i++)
+    {
+        ty_ray ray = ray_at(n, ty_mul(random_direction(&rng), 0.05f));
+        ty_hit hit;
+        ty_surface_point q;
+        assert_true(ty_world_intersect(world, &ray, &hit));
+        ty_world_surface(world, &hit, &q);
+        ty_vec3 side = ty_dot(q.ng, ray.direction) < 0.0f ? q.ng : ty_neg(q.ng);
+        ray.origin = ty_offset_origin(&q, side);
+        ray.direction = random_direction(&rng);
+        if (ty_dot(ray.direction, side) < 0.0f)
+            ray.direction = ty_neg(ray.direction);
+        again += ty_world_occluded(world, &ray);
+    }
+    assert_int_equal(again, 0);
+    ty_world_destroy(world);
+    ty_mesh_destroy(mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closest_on_a_sphere),      cmocka_unit_test(closest_on_a_torus),
-        cmocka_unit_test(closest_is_the_least),     cmocka_unit_test(inward_normals_are_turned),
-        cmocka_unit_test(inside_by_formula),        cmocka_unit_test(surface_of_a_stretched_sphere),
-        cmocka_unit_test(mirrored_stays_outward),   cmocka_unit_test(one_instance_alone),
-        cmocka_unit_test(uv_and_fields_are_linear), cmocka_unit_test(offset_clears_the_surface),
+        cmocka_unit_test(closest_on_a_sphere),
+        cmocka_unit_test(closest_on_a_torus),
+        cmocka_unit_test(closest_is_the_least),
+        cmocka_unit_test(inward_normals_are_turned),
+        cmocka_unit_test(inside_by_formula),
+        cmocka_unit_test(surface_of_a_stretched_sphere),
+        cmocka_unit_test(mirrored_stays_outward),
+        cmocka_unit_test(one_instance_alone),
+        cmocka_unit_test(uv_and_fields_are_linear),
+        cmocka_unit_test(offset_clears_the_surface),
+        cmocka_unit_test(offset_clears_a_large_triangle),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -100,6 +100,8 @@ const ty_mesh* ty_world_prototype_mesh(const ty_world* world, uint32_t prototype
 // Prototype to world, and back.
 const ty_affine* ty_world_to_world(const ty_world* world, uint32_t object, uint32_t instance);
 const ty_affine* ty_world_to_local(const ty_world* world, uint32_t object, uint32_t instance);
+// The kernels in use, as `isa` names them: with the build, what the bits of a picture depend on.
+const char* ty_world_isa(const ty_world* world);
 ty_bounds ty_world_bounds(const ty_world* world);
 uint64_t ty_world_memory(const ty_world* world); // bytes, Embree's and ours
 
@@ -109,6 +111,7 @@ typedef struct ty_surface_point
     ty_vec3 position; // on the triangle, by barycentric interpolation (exact to rounding, whatever the ray's length)
     ty_vec3 ng;       // unit geometric normal, outward (as the triangle winds)
     ty_vec3 ns;       // unit shading normal, on the same side as ng
+    float reach;      // m: bounds the coordinates that position was computed from
     ty_vec2 uv;       // (0,0) without uv
     uint32_t object, instance, triangle;
     float u, v; // barycentric
@@ -118,6 +121,6 @@ void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point
 // A mesh field interpolated at the hit (per-vertex array of the instance's prototype).
 float ty_world_interpolate(const ty_world* world, const ty_surface_point* point, const float* vertex_field);
 
-// An origin for a ray that leaves p towards the side of n, moved off the surface by rounding-error bounds
-// (Waechter & Binder 2019).
-ty_vec3 ty_offset_origin(ty_vec3 p, ty_vec3 n);
+// An origin for a ray that leaves p towards the side of the unit n, moved off the surface by a bound of the rounding
+// errors.
+ty_vec3 ty_offset_origin(const ty_surface_point* p, ty_vec3 n);
