@@ -41,6 +41,28 @@ static ty_status take_error(ty_world* world, const char* doing, ty_error* error)
     return ty_error_set(error, status, "Embree, %s: %s (error %d)", doing, world->embree_text, (int)code);
 }
 
+// What Embree picks by itself on this CPU.
+static const char* best_isa(void)
+{
+#if defined(__x86_64__)
+    bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                  __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512bw") &&
+                  __builtin_cpu_supports("avx512vl");
+    return avx512                             ? "avx512"
+           : __builtin_cpu_supports("avx2")   ? "avx2"
+           : __builtin_cpu_supports("avx")    ? "avx"
+           : __builtin_cpu_supports("sse4.2") ? "sse4.2"
+                                              : "sse2";
+#else
+    return "native";
+#endif
+}
+
+const char* ty_world_isa(const ty_world* world)
+{
+    return world->isa;
+}
+
 static ty_status create_device(ty_world* world, const char* isa, ty_error* error)
 {
     // Embree itself falls back silently from names that it does not know.
@@ -57,11 +79,16 @@ static ty_status create_device(ty_world* world, const char* isa, ty_error* error
         strcat(config, ",isa=");
         strcat(config, known[i]);
     }
+    world->isa = isa ? ty_string_copy(isa) : ty_string_copy(best_isa());
     world->device = rtcNewDevice(config);
     if (!world->device)
-        return ty_error_set(error, isa ? TY_BAD_INPUT : TY_INTERNAL,
-                            "Embree does not start%s%s on this machine (error %d)", isa ? " with isa " : "",
-                            isa ? isa : "", (int)rtcGetDeviceError(NULL));
+    {
+        int code = (int)rtcGetDeviceError(NULL);
+        ty_status status = code == RTC_ERROR_OUT_OF_MEMORY ? TY_NO_MEMORY : isa ? TY_BAD_INPUT : TY_INTERNAL;
+        return ty_error_set(error, status, "Embree does not start%s%s on this machine: %s (error %d)",
+                            isa ? " with isa " : "", isa ? isa : "",
+                            status == TY_NO_MEMORY ? "out of memory" : "not supported", code);
+    }
     rtcSetDeviceErrorFunction(world->device, keep_first_error, world);
     rtcSetDeviceMemoryMonitorFunction(world->device, count_memory, world);
     world->scene = rtcNewScene(world->device);
@@ -92,6 +119,7 @@ void ty_world_destroy(ty_world* world)
         rtcReleaseScene(world->prototypes[i].scene);
     if (world->device)
         rtcReleaseDevice(world->device);
+    ty_free(world->isa);
     ty_free(world->prototypes);
     ty_free(world->objects);
     ty_free(world->to_world);

@@ -28,6 +28,7 @@ typedef struct ty_trace_object
 
 struct ty_world
 {
+    char* isa; // kernels in use, owned
     RTCDevice device;
     RTCScene scene;
     ty_trace_path path;

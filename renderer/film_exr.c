@@ -150,6 +150,7 @@ static void add_scene_attributes(const ty_film* film, const ty_scene* scene, ty_
     ty_exr_add_matrix(exr, "worldToNDC", matrix);
     snprintf(seed, sizeof seed, "%" PRIu64, scene->render.seed.value);
     ty_exr_add_string(exr, "tsuya/version", TSUYA_VERSION);
+    ty_exr_add_string(exr, "tsuya/isa", scene->world ? ty_world_isa(scene->world) : "");
     ty_exr_add_string(exr, "tsuya/hash", scene->hash);
     ty_exr_add_string(exr, "tsuya/overrides", scene->overrides ? scene->overrides : "");
     ty_exr_add_string(exr, "tsuya/seed", seed);

@@ -6,9 +6,9 @@
 #include <tsuya/base/memory.h>
 
 // What every part must share, in the order in which a picture carries it.
-static const char* const carried[] = {"chromaticities", "worldToCamera",   "worldToNDC", "tsuya/version",
-                                      "tsuya/hash",     "tsuya/overrides", "tsuya/seed", "tsuya/integrator",
-                                      "tsuya/recipe",   TY_KEY_PLANNED};
+static const char* const carried[] = {"chromaticities",   "worldToCamera", "worldToNDC",      "tsuya/version",
+                                      "tsuya/isa",        "tsuya/hash",    "tsuya/overrides", "tsuya/seed",
+                                      "tsuya/integrator", "tsuya/recipe",  TY_KEY_PLANNED};
 
 enum
 {

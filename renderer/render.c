@@ -212,7 +212,11 @@ ty_status ty_render(const ty_scene* scene, const ty_render_options* options, ty_
     }
     ty_status status = run_passes(r, options, workers, stats, error);
     if (options->progress)
+    {
+        if (status == TY_OK && stats->samples_done == options->sample_end - options->sample_begin)
+            ty_progress_update(&progress, 1.0, NULL); // the last report of worker 0 was before the last tiles
         ty_progress_end(&progress);
+    }
     sum_counters(r->counters, worker_count, stats);
     stats->seconds = ty_time_now() - r->start;
     integrator_term(&r->integrator);

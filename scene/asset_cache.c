@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <tsuya/base/log.h>
+#include <unistd.h>
 
 ty_status ty_scene_cache_folder(const char* given, char* out, ty_error* error)
 {
@@ -57,18 +58,36 @@ static ty_status make(const ty_recipe* recipe, const char* name, const char* key
     return status;
 }
 
+// Where the file of an asset goes. A cache that cannot be written costs time, not the picture: then the file lives in a
+// folder of its own, removed after it was read.
+static ty_status asset_path(const ty_scene_options* options, const char* key, char path[TY_PATH_MAX], char passing[64],
+                            ty_error* error)
+{
+    char folder[TY_PATH_MAX], file[64];
+    passing[0] = 0;
+    if (ty_scene_cache_folder(options->cache_folder, folder, error) != TY_OK || access(folder, W_OK) != 0)
+    {
+        snprintf(passing, 64, "/tmp/tsuya-XXXXXX");
+        if (!mkdtemp(passing))
+            return ty_error_set(error, TY_BAD_FILE, "neither the folder of made assets nor /tmp can be written");
+        ty_log(TY_LOG_WARNING, "made assets cannot be kept (%s)", error->text[0] ? error->text : "read-only folder");
+        snprintf(folder, sizeof(folder), "%s", passing);
+    }
+    snprintf(file, sizeof(file), "%s.glb", key);
+    ty_path_join(folder, file, path);
+    return TY_OK;
+}
+
 ty_status ty_asset_cache_get(ty_loader* loader, const char* name, const ty_recipe* recipe, ty_aggregate** out,
                              ty_error* error)
 {
-    char folder[TY_PATH_MAX], path[TY_PATH_MAX], file[64], key[33];
+    char path[TY_PATH_MAX], passing[64], key[33];
     double start = ty_time_now();
     ty_status status = ty_recipe_key(recipe, &loader->files, key, error);
     if (status == TY_OK)
-        status = ty_scene_cache_folder(loader->options->cache_folder, folder, error);
+        status = asset_path(loader->options, key, path, passing, error);
     if (status != TY_OK)
         return status;
-    snprintf(file, sizeof(file), "%s.glb", key);
-    ty_path_join(folder, file, path);
     if (read_cached(path, key, name, out))
     {
         ++loader->scene->assets_cached;
@@ -79,10 +98,15 @@ ty_status ty_asset_cache_get(ty_loader* loader, const char* name, const ty_recip
     status = make(recipe, name, key, path, loader->options->workers, error);
     if (status == TY_OK)
         status = ty_aggregate_read(path, NULL, out, error);
+    if (passing[0])
+    {
+        unlink(path);
+        rmdir(passing);
+    }
     if (status != TY_OK)
         return status;
     ++loader->scene->assets_made;
-    ty_log(TY_LOG_INFO, "asset '%s': %u instances made, %.1f s (kept as %s)", name, (*out)->instance_count,
-           ty_time_now() - start, path);
+    ty_log(TY_LOG_INFO, "asset '%s': %u instances made, %.1f s (%s%s)", name, (*out)->instance_count,
+           ty_time_now() - start, passing[0] ? "not kept" : "kept as ", passing[0] ? "" : path);
     return TY_OK;
 }

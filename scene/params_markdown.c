@@ -66,6 +66,8 @@ static const char FILES[] =
     "| `tsuya` | `1` | the version of the format, *required* |\n"
     "| `include` | a file or a list of files | read first; mappings are merged, else this file wins (lists too) |\n"
     "| `search` | a list of folders | where files are looked for after the folder of the file that names them |\n"
+    "| `overrides` | a text | which overrides the scene was made with; recipes inside pictures have it, it changes "
+    "nothing |\n"
     "| `vars` | name: value | what `$name` stands for; `-D name=value` changes it |\n"
     "| `ocio` | the name of a file | OpenColorIO configuration |\n"
     "| `film`, `camera`, `render` | mappings | below |\n"

@@ -226,6 +226,7 @@ char* ty_params_schema(void)
                 "  \"properties\": {\n    \"tsuya\": {\"const\": 1},\n"
                 "    \"include\": {\"type\": [\"string\", \"array\"], \"items\": {\"type\": \"string\"}},\n"
                 "    \"search\": {\"type\": \"array\", \"items\": {\"type\": \"string\"}},\n"
+                "    \"overrides\": {\"type\": \"string\"},\n"
                 "    \"ocio\": {\"type\": \"string\"},\n    \"vars\": {\"type\": \"object\"},\n"
                 "    \"film\": {\"$ref\": \"#/$defs/film\"},\n    \"camera\": {\"$ref\": \"#/$defs/camera\"},\n"
                 "    \"render\": {\"$ref\": \"#/$defs/render\"},\n");

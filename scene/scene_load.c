@@ -8,8 +8,8 @@
 
 static void check_sections(ty_loader* loader)
 {
-    static const char* const keys[] = {"film", "camera", "render",  "assets", "materials", "objects", "lights",
-                                       "ocio", "tsuya",  "include", "vars",   "search",    NULL};
+    static const char* const keys[] = {"film", "camera", "render",  "assets", "materials", "objects",   "lights",
+                                       "ocio", "tsuya",  "include", "vars",   "search",    "overrides", NULL};
     (void)ty_params_check_keys(&loader->reader, loader->root, keys, "a scene"); // reported
 }
 
@@ -23,13 +23,40 @@ static void read_sections(ty_loader* loader)
     ty_read_lights(loader);
 }
 
+// Overrides are in the tree by now. What they were is kept in the text as well, behind those that an earlier recipe
+// tells of, so that the picture of a recipe says what the picture it came from said.
+static void record_overrides(ty_loader* loader)
+{
+    const char* given = ty_override_text(loader->arena, loader->options);
+    ty_node* recorded = ty_node_get(loader->root, "overrides");
+    if (recorded && recorded->kind != TY_NODE_SCALAR)
+    {
+        char described[80];
+        ty_report(loader->errors, recorded->place, TY_BAD_INPUT, "'overrides': expected a text, got %s",
+                  ty_node_describe(recorded, described));
+        return;
+    }
+    const char* before = recorded ? recorded->text : "";
+    const char* all = ty_arena_format(loader->arena, "%s%s%s", before, before[0] && given[0] ? " " : "", given);
+    loader->scene->overrides = all;
+    if (!recorded && all[0])
+    {
+        recorded = ty_node_create(&loader->tree, TY_NODE_SCALAR, loader->root->place);
+        if (!recorded)
+            return;
+        ty_node_add(&loader->tree, loader->root, (ty_key){"overrides", loader->root->place}, recorded);
+    }
+    if (recorded)
+        recorded->text = all;
+}
+
 // The text that makes the same scene again, after everything was read: paths are relative to the scene's folder now.
 static void write_recipe(ty_loader* loader)
 {
+    record_overrides(loader);
     char* body = ty_node_is_empty(loader->root) ? ty_string_copy("") : ty_tree_emit(loader->root);
     loader->scene->recipe = ty_arena_format(loader->arena, "tsuya: 1\n%s", body);
     ty_free(body);
-    loader->scene->overrides = ty_override_text(loader->arena, loader->options);
 }
 
 static void hash_scene(ty_loader* loader)

@@ -149,6 +149,13 @@ base >scene.yaml
 "$tsuya" params 2>err.txt | true
 [ ! -s err.txt ] || fail "a message about a closed pipe"
 
+# A cache that cannot be written costs time, not the picture.
+printf 'tsuya: 1\nkind: aggregate\nfill: { count: 20 }\n' >heap.yaml
+edited 's/ball: \{.*/heap: { aggregate: heap.yaml }/; s/mesh: ball/aggregate: heap/'
+expect 0 "$tsuya" render scene.yaml -o uncached.exr --cache /proc/nowhere
+says "cannot be kept"
+base >scene.yaml
+
 # The command line.
 expect 2 "$tsuya"
 expect 2 "$tsuya" rendr scene.yaml

@@ -45,6 +45,9 @@ expect 4 "$tsuya" merge a.exr t1.exr -o bad.exr
 expect 0 "$tsuya" render scene.yaml -o other.exr --samples 32-63 --seed 4
 expect 4 "$tsuya" merge a.exr other.exr -o bad.exr
 says "other.exr"
+expect 0 "$tsuya" render scene.yaml -o other.exr --samples 32-63 --isa sse4.2
+expect 4 "$tsuya" merge a.exr other.exr -o bad.exr
+says "tsuya/isa"
 absent bad.exr
 
 # The picture holds its scene, and that scene makes the picture.
@@ -52,5 +55,13 @@ expect 0 "$tsuya" info t1.exr --recipe
 cp out.txt again.yaml
 expect 0 "$tsuya" render again.yaml -o again.exr
 same t1.exr again.exr
+# With overrides too: they are in the recipe's values, and told in it.
+expect 0 "$tsuya" render scene.yaml -o o1.exr --spp 4 --set materials.grey.base_color=0.2
+expect 0 "$tsuya" info o1.exr --recipe
+cp out.txt again.yaml
+expect 0 "$tsuya" render again.yaml -o o2.exr
+same o1.exr o2.exr
+expect 0 "$tsuya" info o2.exr --json
+prints "--set materials.grey.base_color=0.2"
 expect 0 "$tsuya" info t1.exr --json
 prints '"tsuya/samples": "0-63"'
