@@ -164,8 +164,11 @@ expect 2 "$tsuya" render
 expect 2 "$tsuya" render scene.yaml --samplse 1-2
 says "did you mean '--samples'"
 expect 2 "$tsuya" render scene.yaml --spp nine
+expect 2 "$tsuya" render scene.yaml --spp 9x
 expect 2 "$tsuya" render scene.yaml --size 10
-expect 2 "$tsuya" render scene.yaml --crop 0,0,99,99
+expect 2 "$tsuya" render scene.yaml --crop 0,0,32,17
+expect 2 "$tsuya" render scene.yaml --crop 0,0,31,18
+expect 0 "$tsuya" render scene.yaml --crop 31,17,31,17 --dry-run
 expect 2 "$tsuya" render scene.yaml --samples 3-9
 expect 2 "$tsuya" render scene.yaml -o out.png
 for wrapped in "--size 4294967297x2" "--crop 4294967296,0,4294967297,2" "--samples 4294967296-4294967297" "--isa mmx"; do

@@ -287,6 +287,25 @@ static void test_removal_keeps_impulses(void** state)
     settled_term(&s);
 }
 
+static void test_what_floats(void** state)
+{
+    (void)state;
+    // On the floor; alone in the air; and two in the air that touch each other alone.
+    ty_container* box = box_make(0.02f, 0.02f, 0.02f);
+    ty_pile* pile = pile_make(box, 0.5f);
+    ty_body four[4] = {body_at(0.01f, -0.019f, 0.0f), body_at(0.0f, 0.0f, 0.0f), body_at(-0.01f, 0.01f, 0.0f),
+                       body_at(-0.01f, 0.012f, 0.0f)};
+    ty_pile_add(pile, four, 4);
+    ty_pile_metrics metrics;
+    bool held[4];
+    ty_pile_measure(pile, &metrics, held);
+    assert_true(held[0] && !held[1] && !held[2] && !held[3]);
+    assert_int_equal(metrics.floating, 3);
+    assert_true(metrics.contacts == 0.5f);
+    ty_pile_destroy(pile);
+    ty_container_destroy(box);
+}
+
 static void test_depth(void** state)
 {
     (void)state;
@@ -312,6 +331,7 @@ int main(void)
         cmocka_unit_test(test_friction_holds_the_pile_open),
         cmocka_unit_test(test_same_bits_for_any_workers),
         cmocka_unit_test(test_removal_keeps_impulses),
+        cmocka_unit_test(test_what_floats),
         cmocka_unit_test(test_depth),
     };
     return cmocka_run_group_tests(tests, group_setup, group_teardown);
