@@ -63,7 +63,7 @@ static ty_status read_number_overrides(const ty_arguments* arguments, ty_scene_a
     ty_status status = TY_OK;
     if (ty_argument_has(arguments, "spp"))
     {
-        status = ty_argument_int(arguments, "spp", 1, 1048576, &value);
+        status = ty_argument_int(arguments, "spp", 1, 65536, &value);
         if (status == TY_OK)
         {
             ty_scene_arguments_set(scene, "render.samples=%ld", value);

@@ -47,7 +47,7 @@ static const char* const wraps[] = {"repeat", "clamp", "mirror", NULL};
 static const ty_param texture_rows[] = {
     {"texture", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_texture_asset_def, texture), "an image file", true},
     {"color_space", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_texture_asset_def, color_space),
-     "of the image; guessed from the file if not given; raw = data", false},
+     "of the image; if not given: guessed for colours, raw for numbers", false},
     {"wrap", TY_PARAM_ENUM, "", 0, 0, wraps, NULL, offsetof(ty_texture_asset_def, wrap), "outside 0..1", false},
 };
 

@@ -125,7 +125,7 @@ static bool read_input_source(ty_reader* reader, ty_node* node, const ty_param* 
     if (texture)
     {
         out->texture = text;
-        out->texture_index = reader->find_texture(reader->context, texture);
+        out->texture_index = reader->find_texture(reader->context, texture, row->type == TY_PARAM_SCALAR_INPUT);
         return out->texture_index >= 0;
     }
     out->attribute = text;

@@ -14,7 +14,7 @@ typedef struct ty_reader
     const ty_color* color; // NULL: colours are taken as ACEScg (the configuration could not be loaded)
     // What a texture or attribute of an input refers to; index or -1 after a report. NULL where inputs cannot have
     // them.
-    int (*find_texture)(void* context, ty_node* name);
+    int (*find_texture)(void* context, ty_node* name, bool is_data); // is_data: numbers, not colours
     int (*find_attribute)(void* context, const ty_node* name);
     void* context;
 } ty_reader;

@@ -79,7 +79,7 @@ static const ty_param camera_rows[] = {
 static const ty_param render_rows[] = {
     {"integrator", TY_PARAM_ENUM, "", 0, 0, integrators, NULL, offsetof(ty_render_def, integrator),
      "path = light transport; the others show one property", false},
-    {"samples", TY_PARAM_INT, "", 1, 1048576, NULL, NULL, offsetof(ty_render_def, samples), "samples per pixel", false},
+    {"samples", TY_PARAM_INT, "", 1, 65536, NULL, NULL, offsetof(ty_render_def, samples), "samples per pixel", false},
     {"max_depth", TY_PARAM_INT, "", 1, 4096, NULL, NULL, offsetof(ty_render_def, max_depth),
      "surface interactions of a path", false},
     {"roulette_depth", TY_PARAM_INT, "", 1, 4096, NULL, NULL, offsetof(ty_render_def, roulette_depth),

@@ -78,7 +78,7 @@ static void numbers_are_plain_decimals(void** state)
     }
     fixture_must_load("tsuya: 1\ncamera: { f_stop: +1.25e+1 }\n");
     fixture_near(fixture_scene->camera.f_stop, 12.5f, 0.0f);
-    fixture_one_error("tsuya: 1\nrender: { samples: 4.5 }\n", 2, 20, "expected a whole number 1..1048576");
+    fixture_one_error("tsuya: 1\nrender: { samples: 4.5 }\n", 2, 20, "expected a whole number 1..65536");
     fixture_one_error("tsuya: 1\nrender: { samples: 99999999999 }\n", 2, 20, "expected a whole number");
     fixture_one_error("tsuya: 1\nrender: { samples: 0 }\n", 2, 20, "out of range");
     fixture_one_error("tsuya: 1\nrender: { seed: -1 }\n", 2, 17, "0..18446744073709551615, got '-1'");

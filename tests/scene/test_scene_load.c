@@ -154,6 +154,7 @@ static void images_are_shared_and_converted(void** state)
     fixture_near(ty_texture_texel(s->light_images[0], 1, 1).g, 7.0f, 1e-3f);
     // 8 bit, sRGB encoded .25 is linear .0509
     fixture_near(ty_texture_texel(s->textures[0], 0, 0).g, 0.0509f, 1e-3f);
+    fixture_near(ty_texture_texel(s->textures[1], 0, 0).g, 0.251f, 1e-3f); // a roughness: the number as it stands
     assert_ptr_equal(s->shading.textures[0], s->textures[0]);
 }
 
