@@ -93,7 +93,7 @@ void* ty_arena_alloc(ty_arena* arena, size_t count, size_t size)
 {
     size_t bytes, room;
     if (__builtin_mul_overflow(count, size, &bytes) ||
-        __builtin_add_overflow(bytes, (size_t)(arena_alignment - 1 + arena_gap), &room))
+        __builtin_add_overflow(bytes, (size_t)arena_alignment - 1 + arena_gap, &room))
         ty_memory_exhausted(count, size);
     room &= ~(size_t)(arena_alignment - 1);
     if (arena->current < 0 || arena->blocks[arena->current].size - arena->blocks[arena->current].used < room)

@@ -21,7 +21,8 @@ static void place_set(ty_error* error, ty_status status, const char* file, int l
     snprintf(error->file, sizeof(error->file), "%s", file ? file : "");
 }
 
-ty_status ty_error_set(ty_error* error, ty_status status, const char* format, ...)
+// In parentheses, since the analyser has macros of these names.
+ty_status(ty_error_set)(ty_error* error, ty_status status, const char* format, ...)
 {
     if (!error)
         return status;
@@ -36,8 +37,8 @@ ty_status ty_error_set(ty_error* error, ty_status status, const char* format, ..
     return status;
 }
 
-ty_status ty_error_set_at(ty_error* error, ty_status status, const char* file, int line, int column, const char* format,
-                          ...)
+ty_status(ty_error_set_at)(ty_error* error, ty_status status, const char* file, int line, int column,
+                           const char* format, ...)
 {
     if (!error)
         return status;

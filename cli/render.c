@@ -108,7 +108,7 @@ static ty_status read_overrides(const ty_arguments* arguments, ty_scene_argument
     status = status == TY_OK ? read_number_overrides(arguments, scene) : status;
     if (status == TY_OK && ty_argument_has(arguments, "size"))
     {
-        int size[2];
+        int size[2] = {0};
         status = read_pair(arguments, "size", 'x', 1, size);
         if (status == TY_OK)
         {

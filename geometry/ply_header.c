@@ -259,7 +259,7 @@ ty_status ply_read_value(ply_file* file, ply_type type, double* out)
     {
         return read_text(file, out);
     }
-    size_t size = (size_t)type_sizes[type];
+    size_t size = (size_t)type_sizes[type]; // NOLINT: the header gave every property a type
     if (file->size - file->offset < size)
     {
         return ply_fail(file, "the file ends too early");

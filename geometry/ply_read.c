@@ -292,6 +292,7 @@ ty_status ty_ply_read_memory(const char* name, const void* bytes, size_t size, t
     status = status == TY_OK ? read_elements(&file, &mesh, &faces, &has_normals) : status;
     if (status == TY_OK)
     {
+        TY_ASSERT(mesh);
         ty_free(mesh->triangles);
         mesh->triangles = faces.triangles;
         mesh->triangle_count = (uint32_t)faces.count;

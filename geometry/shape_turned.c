@@ -73,6 +73,7 @@ static ring add_ring(ty_shape_build* build, const ty_profile_point* p, int segme
 // circles.
 static void sew(ty_shape_build* build, ring a, ring b)
 {
+    TY_ASSERT(a.segments > 0 && b.segments > 0);
     int i = 0, j = 0;
     while (i < a.segments || j < b.segments)
     {

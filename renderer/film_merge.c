@@ -79,7 +79,7 @@ static ty_status check_same(const ty_exr* whole, const ty_film* sum, const ty_ex
         if (!same_attribute(ty_exr_find_attribute(whole, carried[i]), ty_exr_find_attribute(exr, carried[i])))
             return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "its %s differs from the first part's", carried[i]);
     const ty_film_setup *a = &sum->setup, *b = &film->setup;
-    if (memcmp(a->size, b->size, sizeof a->size) || memcmp(a->crop, b->crop, sizeof a->crop))
+    if (memcmp(a->size, b->size, sizeof a->size) != 0 || memcmp(a->crop, b->crop, sizeof a->crop) != 0)
         return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "its size or crop differs from the first part's");
     if (a->aovs != b->aovs || a->half != b->half)
         return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "its channels differ from the first part's");

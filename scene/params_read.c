@@ -250,7 +250,7 @@ static void report_unknown_row(ty_reader* reader, ty_key key, const ty_param_tab
 {
     int extra = count_names(skip);
     const char** names = TY_ALLOC(const char*, table->count + extra);
-    for (int i = 0; i < extra; ++i)
+    for (int i = 0; skip && i < extra; ++i)
         names[i] = skip[i];
     for (int i = 0; i < table->count; ++i)
         names[extra + i] = table->params[i].name;

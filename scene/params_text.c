@@ -135,7 +135,7 @@ char* ty_params_text(const char* path, char suggestion[64])
         for (int i = 0; i < count && !out.size; ++i)
             if (exact ? strcmp(path, tables[i]->name) == 0 : names_table(path, tables[i]))
                 write_table(&out, tables[i], NULL);
-    if (out.size)
+    if (out.size || !path)
         return ty_text_take(&out);
     char* row = text_of_row(path, tables, count);
     if (!row)

@@ -14,7 +14,7 @@ static void read_section(ty_loader* loader, const char* name, const ty_param_tab
 
 static ty_place key_place(const ty_node* map, const char* key)
 {
-    const ty_node* value = map ? ty_node_get(map, key) : NULL;
+    const ty_node* value = ty_node_get(map, key);
     return value ? value->place : map->place;
 }
 
