@@ -167,7 +167,9 @@ expect 2 "$tsuya" render scene.yaml --spp nine
 expect 2 "$tsuya" render scene.yaml --spp 9x
 expect 2 "$tsuya" render scene.yaml --size 10
 expect 2 "$tsuya" render scene.yaml --crop 0,0,32,17
+says "--crop: '0,0,32,17'"
 expect 2 "$tsuya" render scene.yaml --crop 0,0,31,18
+says "--crop: '0,0,31,18'"
 expect 0 "$tsuya" render scene.yaml --crop 31,17,31,17 --dry-run
 expect 2 "$tsuya" render scene.yaml --samples 3-9
 expect 2 "$tsuya" render scene.yaml -o out.png
