@@ -181,7 +181,9 @@ static void test_progress_bar(void** state)
 static void on_terminal(void (*fn)(void* context), char text[4096])
 {
     int master = posix_openpt(O_RDWR | O_NOCTTY);
-    assert_true(master >= 0 && grantpt(master) == 0 && unlockpt(master) == 0);
+    if (master < 0)
+        skip(); // a container without pseudo terminals
+    assert_true(grantpt(master) == 0 && unlockpt(master) == 0);
     pid_t pid = fork();
     if (pid == 0)
     {
