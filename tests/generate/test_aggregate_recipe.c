@@ -311,6 +311,34 @@ static void test_walls(void** state)
     ty_container_destroy(bowl);
 }
 
+// The five planes of a box: each gap is to the plane, each normal leads away from it.
+static void test_box_walls(void** state)
+{
+    (void)state;
+    ty_container_def def = ty_container_def_default();
+    def.kind = TY_CONTAINER_BOX;
+    def.shape.size = ty_vec3_make(0.03f, 0.02f, 0.04f);
+    def.shape.rounding = 0.0f;
+    ty_container* box;
+    ty_error error;
+    assert_int_equal(ty_container_create(&def, NULL, &box, &error), TY_OK);
+    assert_int_equal(ty_container_wall_count(box), 5);
+    const ty_vec3 p = {0.01f, -0.015f, 0.02f};
+    const float gaps[6] = {0.04f, 0.02f, 0.005f, 0.0f, 0.06f, 0.02f}; // along -x +x -y +y -z +z; +y is open
+    int seen = 0;
+    for (int w = 0; w < 5; w++)
+    {
+        ty_vec3 n, again;
+        float gap = ty_container_wall(box, w, p, &n);
+        int along = n.x != 0.0f ? n.x < 0.0f : n.y != 0.0f ? 2 + (n.y < 0.0f) : 4 + (n.z < 0.0f);
+        seen |= 1 << along;
+        assert_true(fabsf(gap - gaps[along]) < 1e-7f && ty_length(n) == 1.0f);
+        assert_true(fabsf(ty_container_wall(box, w, ty_mad(p, n, 1e-3f), &again) - gap - 1e-3f) < 1e-7f);
+    }
+    assert_int_equal(seen, 0x37);
+    ty_container_destroy(box);
+}
+
 // Of two grains dropped, one beside the bowl: it is taken out, the other comes to rest in the hollow.
 static void test_lost(void** state)
 {
@@ -349,6 +377,7 @@ int main(void)
         cmocka_unit_test(test_container_mirrors_shapes),
         cmocka_unit_test(test_impossible_wishes),
         cmocka_unit_test(test_walls),
+        cmocka_unit_test(test_box_walls),
         cmocka_unit_test(test_lost),
         cmocka_unit_test(test_bowl),
         cmocka_unit_test(test_one_seed_one_result),

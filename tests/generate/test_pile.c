@@ -82,6 +82,29 @@ static void test_free_fall(void** state)
 }
 
 // Two grains hit each other off centre, without gravity: they part, spin, and no momentum is made or lost.
+// Of the body's own rotation, for density 1.
+static ty_vec3 spin_momentum(const ty_body* body)
+{
+    const ty_grain* grain = &grains[body->grain];
+    const float* s = grain->inverse_inertia;
+    const ty_vec3 x = {s[0], s[3], s[4]}, y = {s[3], s[1], s[5]}, z = {s[4], s[5], s[2]};
+    ty_quat q = body->rotation, back = {-q.x, -q.y, -q.z, q.w};
+    ty_vec3 w = ty_quat_rotate(back, body->spin), yz = ty_cross(y, z);
+    ty_vec3 l = {ty_dot(w, yz), ty_dot(w, ty_cross(z, x)), ty_dot(w, ty_cross(x, y))};
+    return ty_mul(ty_quat_rotate(q, l), grain->volume / ty_dot(x, yz));
+}
+
+static ty_vec3 angular_momentum(const ty_body* bodies, int count)
+{
+    ty_vec3 sum = {0.0f, 0.0f, 0.0f};
+    for (int i = 0; i < count; i++)
+    {
+        ty_vec3 orbit = ty_mul(ty_cross(bodies[i].position, bodies[i].velocity), grains[bodies[i].grain].volume);
+        sum = ty_add(sum, ty_add(orbit, spin_momentum(&bodies[i])));
+    }
+    return sum;
+}
+
 static void test_momentum(void** state)
 {
     (void)state;
@@ -94,10 +117,17 @@ static void test_momentum(void** state)
     two[0].velocity = ty_vec3_make(0.05f, 0.3f, 0.0f);
     two[1].grain = 1;
     ty_pile_add(pile, two, 2);
-    ty_vec3 before = ty_pile_momentum(pile);
-    for (int i = 0; i < 100; i++)
-        ty_pile_step(pile, NULL);
+    ty_vec3 before = ty_pile_momentum(pile), angular = angular_momentum(two, 2);
     const ty_body* b = ty_pile_bodies(pile);
+    for (int i = 0; i < 100; i++)
+    {
+        bool apart = b[1].velocity.y == 0.0f;
+        ty_pile_step(pile, NULL);
+        // At the hit: later the turning axes, of which the substeps take no notice, shift it too. The two arms end a
+        // gap of up to .03 mm apart.
+        ty_vec3 lost = ty_sub(angular_momentum(b, 2), angular);
+        assert_true(!apart || ty_length(lost) <= 1e-18f + 0.03f * ty_length(spin_momentum(&b[0])));
+    }
     assert_true(ty_length(ty_sub(ty_pile_momentum(pile), before)) < 1e-6f);
     assert_true(b[1].velocity.y > 0.05f); // there was a collision
     assert_true(ty_length(b[0].velocity) < 0.3f);
