@@ -10,7 +10,7 @@
 static const char disc_scene[] = "tsuya: 1\n"
                                  "film: { size: [8, 8], filter: box, filter_width: 1, half: false }\n"
                                  "render: { samples: %d, max_depth: 4, seed: 11 }\n"
-                                 "camera: { position: [0, 1, 0.0001], look_at: [0, 0, 0], vfov: 0.4 }\n"
+                                 "camera: { position: [0, 1, 0.0001], look_at: [0, 0, 0], vfov: 0.04 }\n"
                                  "assets: { disc: { shape: disc, radius: 0.02 } }\n"
                                  "materials: { m: { model: surface, base_color: 1, specular_weight: 0 } }\n"
                                  "objects: [ { mesh: disc, material: m } ]\n"
@@ -25,8 +25,8 @@ static void check_irradiance(const char* light, double expected)
     ty_exr_destroy(exr);
     double irradiance = found.mean * PI, error = found.error * PI;
     print_message("%-110s E %.6f +- %.6f expected %.6f\n", light, irradiance, error, expected);
-    // The disc is seen through a cone of 0.4 degrees: E varies over it by less than 1e-4 of itself.
-    assert_true(fabs(irradiance - expected) <= 3.0 * error + 2e-4 * expected);
+    // The disc is seen through a cone of 0.04 degrees: E varies over it by less than 1e-6 of itself.
+    assert_true(fabs(irradiance - expected) <= 3.0 * error + 3e-6 * expected);
 }
 
 // Irradiance at the origin, normal +y, from a parallel rectangle with one corner over it: sides a, b at height h.
