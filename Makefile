@@ -15,7 +15,7 @@ test: setup
 	@.ci/build release
 	@.ci/test release
 
-mutations: build
+mutations: setup
 	@tests/mutations/run
 
 fuzz:
@@ -28,6 +28,7 @@ format:
 	@git ls-files '*.c' '*.h' '*.cpp' | xargs clang-format -i
 
 check:
+	@.ci/setup build check
 	@.ci/check
 
 clean:
