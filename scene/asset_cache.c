@@ -64,13 +64,14 @@ static ty_status asset_path(const ty_scene_options* options, const char* key, ch
                             ty_error* error)
 {
     char folder[TY_PATH_MAX], file[64];
+    ty_error reason = {0}; // of a warning: not the caller's
     passing[0] = 0;
-    if (ty_scene_cache_folder(options->cache_folder, folder, error) != TY_OK || access(folder, W_OK) != 0)
+    if (ty_scene_cache_folder(options->cache_folder, folder, &reason) != TY_OK || access(folder, W_OK) != 0)
     {
         snprintf(passing, 64, "/tmp/tsuya-XXXXXX");
         if (!mkdtemp(passing))
             return ty_error_set(error, TY_BAD_FILE, "neither the folder of made assets nor /tmp can be written");
-        ty_log(TY_LOG_WARNING, "made assets cannot be kept (%s)", error->text[0] ? error->text : "read-only folder");
+        ty_log(TY_LOG_WARNING, "made assets cannot be kept (%s)", reason.text[0] ? reason.text : "read-only folder");
         snprintf(folder, sizeof(folder), "%s", passing);
     }
     snprintf(file, sizeof(file), "%s.glb", key);

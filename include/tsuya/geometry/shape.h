@@ -9,7 +9,7 @@ typedef enum ty_shape_kind
     TY_SHAPE_SPHERE,    // radius
     TY_SHAPE_ELLIPSOID, // size = semi-axes
     TY_SHAPE_BOX,       // size = half extents, rounding = edge radius
-    TY_SHAPE_CYLINDER,  // radius, height, capped, rounding
+    TY_SHAPE_CYLINDER,  // radius, height, rounding; capped
     TY_SHAPE_TORUS,     // radius (to the tube's centre), tube
     TY_SHAPE_PLANE,     // size x, z half extents; open, normal +y
     TY_SHAPE_DISC,      // radius; open, normal +y
