@@ -1,39 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Path tracing: light sampling at each surface, weighted against the surface's own sampling; roulette from a depth on.
-#include "integrator.h"
-
-typedef struct path
-{
-    ty_ray ray;
-    ty_rgb beta; // throughput
-    ty_light_view view;
-    int bounce; // surfaces passed before the present one
-} path;
-
-// One light sample at a surface. u: two for the light's surface, one to choose it, one for the ray's start.
-static ty_rgb direct_light(const ty_integrator* in, const ty_bsdf* bsdf, const float u[4], ty_counters* counters)
-{
-    ty_light_sample light;
-    if (ty_bsdf_is_delta(bsdf) ||
-        !ty_light_set_sample(&in->lights, bsdf->point.position, u[2], (ty_vec2){u[0], u[1]}, &light))
-        return (ty_rgb){0};
-    float pdf = 0.0f;
-    ty_rgb value = ty_rgb_mul(ty_bsdf_eval(bsdf, light.wi, &pdf), light.radiance);
-    if (ty_rgb_is_black(value))
-        return value;
-    ty_ray shadow;
-    ty_bsdf_spawn(bsdf, light.wi, u[3], &shadow);
-    if (light.distance < TY_FLOAT_MAX)
-        shadow.t_max = light.distance * TY_LIGHT_REACH;
-    counters->shadow_rays++;
-    if (ty_world_occluded(in->scene->world, &shadow))
-        return (ty_rgb){0};
-    return ty_rgb_scale(value, (light.delta ? 1.0f : ty_power_heuristic(light.pdf, pdf)) / light.pdf);
-}
+#include "path.h"
 
 // The square root keeps more of the dim paths than the throughput itself: less noise for its rays. Scales beta and
 // makes *u uniform again. False = the path ends.
-static bool survives(const ty_render_def* def, path* p, float* u)
+static bool survives(const ty_render_def* def, ty_path* p, float* u)
 {
     float probability = ty_min(1.0f, sqrtf(ty_rgb_max(p->beta)));
     if (p->bounce + 1 < def->roulette_depth || !(probability < 1.0f))
@@ -51,7 +22,7 @@ static void add(ty_rgb* radiance, ty_rgb beta, ty_rgb light)
 }
 
 // The way on after a sampled direction. False = the path ends.
-static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, float u, path* p)
+static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, float u, ty_path* p)
 {
     p->beta = ty_rgb_mul(p->beta, sample->weight);
     if (!survives(&in->scene->render, p, &u))
@@ -63,35 +34,18 @@ static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sa
 
 // Light at a surface and the next ray from it. u: direction 2, lobe, roulette and start; light's surface 2, choice,
 // start of the shadow ray. False = the path ends.
-static bool scatter(const ty_integrator* in, const ty_bsdf* bsdf, const float u[8], path* p, ty_rgb* radiance,
+static bool scatter(const ty_integrator* in, const ty_bsdf* bsdf, const float u[8], ty_path* p, ty_rgb* radiance,
                     ty_counters* counters)
 {
-    add(radiance, p->beta, direct_light(in, bsdf, u + 4, counters));
+    add(radiance, p->beta, ty_path_direct_light(in, bsdf, u + 4, counters));
     ty_bsdf_sample sample;
     return ty_bsdf_sample_wi(bsdf, u[2], (ty_vec2){u[0], u[1]}, &sample) && go_on(in, bsdf, &sample, u[3], p);
 }
 
-// What the sampled direction of a lobe meets of the lights, the scene between.
-static ty_rgb light_along(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, float u,
-                          ty_counters* counters)
-{
-    ty_light_view view = {.from = bsdf->point.position, .pdf = sample->pdf, .full = sample->delta};
-    ty_ray ray;
-    bool covered;
-    ty_bsdf_spawn(bsdf, sample->wi, u, &ray);
-    if (ty_rgb_is_black(ty_light_set_along(&in->lights, &ray, TY_FLOAT_MAX, &view, &covered)))
-        return (ty_rgb){0};
-    ty_hit hit;
-    counters->path_rays++;
-    bool found = ty_world_intersect(in->scene->world, &ray, &hit);
-    ty_rgb met = ty_light_set_along(&in->lights, &ray, found ? hit.t : TY_FLOAT_MAX, &view, &covered);
-    return ty_rgb_mul(met, sample->weight);
-}
-
 // A translucent body under a coat, seen by the camera: light comes by both, and the way on is one of them. Choosing
 // between them for the light as well would double the noise.
-static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf* body, path* p, ty_rgb* radiance,
-                         ty_counters* counters)
+static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf* body, ty_path* p,
+                         ty_rgb* radiance, ty_counters* counters)
 {
     float c[8], pair[4], u[8], chance = ty_bsdf_coat_chance(body);
     ty_bsdf coat = *body;
@@ -99,9 +53,9 @@ static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_
     ty_sampler_8d(sampler, TY_GROUP_COAT, c);
     ty_bsdf_sample glint;
     bool shines = ty_bsdf_sample_wi(&coat, c[2], (ty_vec2){c[0], c[1]}, &glint);
-    add(radiance, p->beta, direct_light(in, &coat, c + 4, counters));
+    add(radiance, p->beta, ty_path_direct_light(in, &coat, c + 4, counters));
     if (shines)
-        add(radiance, p->beta, light_along(in, &coat, &glint, c[3], counters));
+        add(radiance, p->beta, ty_path_light_along(in, &coat, &glint, c[3], counters));
 
     ty_rgb weight;
     ty_rng extra = ty_sampler_extra(sampler, p->bounce);
@@ -111,7 +65,7 @@ static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_
     bool lit = ty_bsdf_take_interior(body, &in->scene->shading, inside, &extra, &weight);
     counters->interior_rays++;
     if (lit)
-        add(radiance, ty_rgb_mul(p->beta, weight), direct_light(in, body, u + 4, counters));
+        add(radiance, ty_rgb_mul(p->beta, weight), ty_path_direct_light(in, body, u + 4, counters));
 
     if (pair[2] < chance)
     {
@@ -126,7 +80,7 @@ static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_
 }
 
 // The next vertex of a path. False = the path ends.
-static bool advance(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf* bsdf, path* p, ty_rgb* radiance,
+static bool advance(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf* bsdf, ty_path* p, ty_rgb* radiance,
                     ty_counters* counters)
 {
     if (p->bounce == 0 && ty_bsdf_coat_chance(bsdf) > 0.0f)
@@ -149,7 +103,7 @@ static bool advance(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf*
 }
 
 // Beer's law over a way through the medium behind a surface.
-static void absorb(path* p, ty_rgb absorption, float distance)
+static void absorb(ty_path* p, ty_rgb absorption, float distance)
 {
     if (ty_rgb_is_black(absorption))
         return;
@@ -161,7 +115,7 @@ void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray r
                     ty_film_sample* out)
 {
     const ty_scene* scene = in->scene;
-    path p = {.ray = ray, .beta = {1.0f, 1.0f, 1.0f}, .view = {.full = true, .camera = true}};
+    ty_path p = {.ray = ray, .beta = {1.0f, 1.0f, 1.0f}, .view = {.full = true, .camera = true}};
     for (;; p.bounce++)
     {
         ty_hit hit;
