@@ -114,12 +114,20 @@ typedef struct ty_surface_point
     float reach;      // m: bounds the coordinates that position was computed from
     ty_vec2 uv;       // (0,0) without uv
     uint32_t object, instance, triangle;
-    float u, v; // barycentric
+    float u, v;           // barycentric
+    ty_vec3 footprint[2]; // half axes of what a lookup averages over, along the triangle, world; zero = the point alone
 } ty_surface_point;
 
 void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point* out);
 // A mesh field interpolated at the hit (per-vertex array of the instance's prototype).
 float ty_world_interpolate(const ty_world* world, const ty_surface_point* point, const float* vertex_field);
+
+// How the position moves with uv, in world space and the triangle's plane. False (and zeros) without uv, or where the
+// triangle has no area on the surface or in uv.
+bool ty_world_tangents(const ty_world* world, const ty_surface_point* point, ty_vec3* dpdu, ty_vec3* dpdv);
+// The ellipse that a cone about the unit direction, as wide (m, diameter) as `width` there, cuts out of the surface
+// (Akenine-Moeller et al. 2021, "Improved shader and texture level of detail using ray cones", eq. 8 to 12).
+void ty_surface_set_footprint(ty_surface_point* point, ty_vec3 direction, float width);
 
 // An origin for a ray that leaves p towards the side of the unit n, moved off the surface by a bound of the rounding
 // errors.
