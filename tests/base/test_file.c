@@ -383,6 +383,31 @@ static void test_paths(void** state)
 
 #define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove)
 
+static void assert_frame(const char* pattern, int frame, const char* expected)
+{
+    char out[TY_PATH_MAX];
+    ty_path_frame(pattern, frame, out);
+    assert_string_equal(out, expected);
+}
+
+static void test_sequences(void** state)
+{
+    (void)state;
+    assert_true(ty_path_is_sequence("a/fill.####.exr"));
+    assert_true(ty_path_is_sequence("#"));
+    assert_false(ty_path_is_sequence("a##/fill.exr")); // a folder's name is a name
+    assert_frame("a#/fill.####.exr", 7, "a#/fill.0007.exr");
+    assert_frame("fill.##.exr", 12345, "fill.12345.exr");
+    assert_frame("fill.####.exr", -7, "fill.-007.exr");
+    assert_frame("take#2_##", 5, "take#2_05");
+    assert_frame("a##/fill.exr", 5, "a##/fill.exr");
+    char most[TY_PATH_MAX];
+    memset(most, 'x', sizeof(most));
+    memcpy(most, "#", 1);
+    most[TY_PATH_MAX - 1] = 0;
+    assert_frame(most, 100, ""); // does not fit: names nothing
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -402,6 +427,7 @@ int main(void)
         IN_FOLDER(test_failed_write_leaves_the_old),
         IN_FOLDER(test_folder_create),
         cmocka_unit_test(test_paths),
+        cmocka_unit_test(test_sequences),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

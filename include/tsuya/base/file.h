@@ -44,6 +44,12 @@ const char* ty_path_extension(const char* path); // "exr", without the dot; "" i
 void ty_path_folder(const char* path, char out[TY_PATH_MAX]);                   // "." if none
 void ty_path_join(const char* folder, const char* name, char out[TY_PATH_MAX]); // name absolute: name alone
 
+// Sequences: the last run of '#' in the name of the file stands for the number of the frame, with at least as many
+// digits as the run is long ("fill.####.exr", 7: "fill.0007.exr"; -7: "fill.-007.exr"). Without a run the path stays as
+// it is.
+bool ty_path_is_sequence(const char* path);
+void ty_path_frame(const char* pattern, int frame, char out[TY_PATH_MAX]);
+
 // Runs fn in a child process with limits: for importers of foreign code. What fn writes to output_fd becomes *output
 // (at most max_output bytes). A crash, limit or timeout is TY_BAD_FILE with the reason; a failure of fn brings its
 // ty_error. A cancel request ends the child with TY_INTERRUPTED or TY_TERMINATED. fn must not touch threads; what it
