@@ -50,6 +50,18 @@ void ty_path_join(const char* folder, const char* name, char out[TY_PATH_MAX]); 
 bool ty_path_is_sequence(const char* path);
 void ty_path_frame(const char* pattern, int frame, char out[TY_PATH_MAX]);
 
+typedef struct ty_frame_numbers
+{
+    int* numbers; // ascending, each once; owned, freed with ty_frame_numbers_term
+    int count;
+} ty_frame_numbers;
+
+// The frames of a pattern that are there as regular files. None at all (or no such folder) is TY_BAD_FILE.
+TY_CHECKED ty_status ty_frame_numbers_find(const char* pattern, ty_frame_numbers* out, ty_error* error);
+void ty_frame_numbers_term(ty_frame_numbers* frames);
+// How many from first to last are not there, and which: "7, 12-14", ending in "..." when size does not suffice.
+int ty_frame_numbers_missing(const ty_frame_numbers* frames, int first, int last, char* text, size_t size);
+
 // Runs fn in a child process with limits: for importers of foreign code. What fn writes to output_fd becomes *output
 // (at most max_output bytes). A crash, limit or timeout is TY_BAD_FILE with the reason; a failure of fn brings its
 // ty_error. A cancel request ends the child with TY_INTERRUPTED or TY_TERMINATED. fn must not touch threads; what it
