@@ -28,6 +28,10 @@ void ty_mesh_destroy(ty_mesh* mesh)
     for (int i = 0; i < mesh->attribute_count; i++)
         ty_free(mesh->attributes[i].values);
     ty_free(mesh->attributes);
+    for (int i = 0; i < mesh->slot_count; i++)
+        ty_free(mesh->slot_names[i]);
+    ty_free(mesh->slot_names);
+    ty_free(mesh->slots);
     ty_free(mesh->positions);
     ty_free(mesh->normals);
     ty_free(mesh->uvs);
@@ -68,6 +72,10 @@ ty_mesh* ty_mesh_copy(const ty_mesh* mesh)
         size_t size = sizeof(float) * (size_t)mesh->attributes[i].components;
         copy->attributes[i].values = copy_array(mesh->attributes[i].values, n, size);
     }
+    copy->slots = copy_array(mesh->slots, mesh->triangle_count, sizeof(uint16_t));
+    copy->slot_names = copy_array(mesh->slot_names, (size_t)mesh->slot_count, sizeof(char*));
+    for (int i = 0; i < copy->slot_count; i++)
+        copy->slot_names[i] = ty_string_copy(mesh->slot_names[i]);
     return copy;
 }
 
@@ -101,6 +109,9 @@ ty_status ty_mesh_validate(const ty_mesh* mesh, const char* name, ty_error* erro
             if (mesh->triangles[i][k] >= mesh->vertex_count)
                 return ty_error_set_at(error, TY_BAD_FILE, name, 0, 0, "triangle %u names vertex %u of %u", i,
                                        mesh->triangles[i][k], mesh->vertex_count);
+        if (mesh->slots && mesh->slots[i] >= mesh->slot_count)
+            return ty_error_set_at(error, TY_BAD_FILE, name, 0, 0, "triangle %u has material slot %u of %d", i,
+                                   mesh->slots[i], mesh->slot_count);
         area += triangle_area(mesh, i);
     }
     if (!(area > 0.0))

@@ -61,6 +61,54 @@ static bool has_component(const ply_element* element, int component)
     return false;
 }
 
+static const char* const color_names[4] = {"red", "green", "blue", "alpha"};
+
+// How many of red, green, blue, alpha make one colour: 0, 3 or 4, of one scalar type; 0 where `color` is something
+// else.
+static int color_components(const ply_element* element)
+{
+    int first = ply_find_property(element, "color") < 0 ? ply_find_property(element, color_names[0]) : -1, count = 0;
+    for (; first >= 0 && count < 4; count++)
+    {
+        int found = ply_find_property(element, color_names[count]);
+        if (found < 0 || element->properties[found].type != element->properties[first].type)
+        {
+            break;
+        }
+    }
+    return count >= 3 ? count : 0;
+}
+
+// Integer colours are fractions of their range, as every program means them.
+static float fraction_of(ply_type type)
+{
+    return type == PLY_UINT8 ? 1.0f / 255.0f : 1.0f;
+}
+
+// The place of a property in the attribute `color`, if it belongs there.
+static vertex_target color_target(ty_mesh* mesh, const ply_element* element, const ply_property* property)
+{
+    int count = color_components(element);
+    for (int i = 0; i < count; i++)
+    {
+        if (strcmp(property->name, color_names[i]) == 0)
+        {
+            bool is_encoded = property->type == PLY_UINT8 || property->type == PLY_UINT16;
+            float* values = ty_mesh_add_attribute(mesh, "color", count);
+            for (int k = 0; k < mesh->attribute_count; k++)
+            {
+                if (mesh->attributes[k].values == values)
+                {
+                    mesh->attributes[k].space = is_encoded ? TY_ATTRIBUTE_SRGB : TY_ATTRIBUTE_LINEAR_SRGB;
+                }
+            }
+            return (vertex_target){values + i, count,
+                                   property->type == PLY_UINT16 ? 1.0f / 65535.0f : fraction_of(property->type)};
+        }
+    }
+    return (vertex_target){NULL, 0, 1.0f};
+}
+
 static vertex_target target_of(ty_mesh* mesh, const ply_property* property, bool has_normals)
 {
     int component = known_component(property->name);
@@ -77,9 +125,7 @@ static vertex_target target_of(ty_mesh* mesh, const ply_property* property, bool
     {
         return mesh->uvs ? (vertex_target){&mesh->uvs[0].x + component - 6, 2, 1.0f} : (vertex_target){NULL, 0, 1.0f};
     }
-    // Integer colours are fractions of their range, as every program means them.
-    float scale = property->type == PLY_UINT8 ? 1.0f / 255.0f : 1.0f;
-    return (vertex_target){ty_mesh_add_attribute(mesh, property->name, 1), 1, scale};
+    return (vertex_target){ty_mesh_add_attribute(mesh, property->name, 1), 1, fraction_of(property->type)};
 }
 
 static ty_status fill_vertices(ply_file* file, const ply_element* element, const vertex_target* targets)
@@ -145,7 +191,11 @@ static ty_status read_vertices(ply_file* file, const ply_element* element, ty_me
     vertex_target targets[PLY_MAX_PROPERTIES];
     for (int i = 0; i < element->property_count; i++)
     {
-        targets[i] = target_of(mesh, &element->properties[i], has_normals);
+        targets[i] = color_target(mesh, element, &element->properties[i]);
+        if (!targets[i].values)
+        {
+            targets[i] = target_of(mesh, &element->properties[i], has_normals);
+        }
     }
     return fill_vertices(file, element, targets);
 }

@@ -39,6 +39,22 @@ static void put_text(writer* out, const char* text)
     put(out, text, strlen(text));
 }
 
+// Colours as other programs write them: bytes where they are encoded, linear floats else.
+static bool is_color(const ty_mesh_attribute* attribute)
+{
+    return strcmp(attribute->name, "color") == 0 && attribute->components >= 3 &&
+           attribute->space != TY_ATTRIBUTE_NUMBERS;
+}
+
+static void put_color_property(writer* out, const ty_mesh_attribute* attribute, int component)
+{
+    static const char* const names[] = {"red", "green", "blue", "alpha"};
+    char text[96];
+    const char* type = attribute->space == TY_ATTRIBUTE_SRGB ? "uchar" : "float";
+    snprintf(text, sizeof text, "property %s %s\n", type, names[component]);
+    put_text(out, text);
+}
+
 static void put_property(writer* out, const char* name, int component, int components)
 {
     static const char* const suffix[] = {"_x", "_y", "_z", "_w"};
@@ -66,7 +82,14 @@ static void put_header(writer* out, const ty_mesh* mesh)
     {
         for (int c = 0; c < mesh->attributes[i].components; c++)
         {
-            put_property(out, mesh->attributes[i].name, c, mesh->attributes[i].components);
+            if (is_color(&mesh->attributes[i]))
+            {
+                put_color_property(out, &mesh->attributes[i], c);
+            }
+            else
+            {
+                put_property(out, mesh->attributes[i].name, c, mesh->attributes[i].components);
+            }
         }
     }
     snprintf(text, sizeof text, "element face %u\nproperty list uchar uint vertex_indices\nend_header\n",
@@ -90,7 +113,17 @@ static void put_vertex(writer* out, const ty_mesh* mesh, uint32_t v)
     for (int i = 0; i < mesh->attribute_count; i++)
     {
         const ty_mesh_attribute* attribute = &mesh->attributes[i];
-        put_floats(out, attribute->values + (size_t)v * (size_t)attribute->components, attribute->components);
+        const float* values = attribute->values + (size_t)v * (size_t)attribute->components;
+        if (!is_color(attribute) || attribute->space != TY_ATTRIBUTE_SRGB)
+        {
+            put_floats(out, values, attribute->components);
+            continue;
+        }
+        for (int c = 0; c < attribute->components; c++)
+        {
+            uint8_t byte = (uint8_t)(ty_clamp(values[c], 0.0f, 1.0f) * 255.0f + 0.5f);
+            put(out, &byte, 1);
+        }
     }
 }
 

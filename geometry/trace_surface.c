@@ -74,6 +74,17 @@ float ty_world_interpolate(const ty_world* world, const ty_surface_point* point,
     return vertex_field[c.v[0]] * c.w[0] + vertex_field[c.v[1]] * c.w[1] + vertex_field[c.v[2]] * c.w[2];
 }
 
+void ty_world_interpolate_attribute(const ty_world* world, const ty_surface_point* point,
+                                    const ty_mesh_attribute* attribute, float out[4])
+{
+    corners c = corners_of(ty_world_mesh(world, point->object, point->instance), point->triangle, point->u, point->v);
+    size_t width = (size_t)attribute->components;
+    out[0] = out[1] = out[2] = out[3] = 0.0f;
+    for (size_t corner = 0; corner < 3; corner++)
+        for (size_t i = 0; i < width; i++)
+            out[i] += attribute->values[c.v[corner] * width + i] * c.w[corner];
+}
+
 // Units in the last place as in C. Waechter and N. Binder 2019, "A fast and robust method for avoiding
 // self-intersection", Ray Tracing Gems ch. 6, but of all that went into the position: under a rotated instance and on a
 // large triangle the error of every axis comes from there. 32 of them; rays begin to fail at 2. The floor is set for

@@ -74,7 +74,7 @@ void ty_debug_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray 
     ty_surface_point point;
     ty_bsdf bsdf;
     ty_world_surface(scene->world, &hit, &point);
-    ty_material_prepare(scene->materials[scene->objects[hit.object].material], &scene->shading, &point,
+    ty_material_prepare(ty_scene_material(scene, hit.object, hit.instance, hit.triangle), &scene->shading, &point,
                         ty_neg(ray.direction), &bsdf);
     counters->path_vertices++;
     out->covered = true;

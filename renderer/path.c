@@ -130,7 +130,7 @@ void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray r
         ty_surface_point point;
         ty_bsdf bsdf;
         ty_world_surface(scene->world, &hit, &point);
-        ty_material_prepare(scene->materials[scene->objects[hit.object].material], &scene->shading, &point,
+        ty_material_prepare(ty_scene_material(scene, hit.object, hit.instance, hit.triangle), &scene->shading, &point,
                             ty_neg(p.ray.direction), &bsdf);
         counters->path_vertices++;
         if (!bsdf.entering)

@@ -26,9 +26,27 @@ void ty_load_textures(ty_loader* loader)
             scene->light_images[i] = scene->textures[loader->light_textures[i]];
 }
 
-// What shading and tracing expect of every mesh.
-static void complete_mesh(ty_mesh* mesh)
+// Vertex colours to ACEScg, as textures are.
+static void convert_colors(const ty_loader* loader, ty_mesh* mesh)
 {
+    for (int i = 0; i < mesh->attribute_count; ++i)
+    {
+        ty_error error;
+        ty_mesh_attribute* attribute = &mesh->attributes[i];
+        const char* space = attribute->space == TY_ATTRIBUTE_SRGB ? "srgb_texture" : "lin_rec709";
+        if (attribute->space == TY_ATTRIBUTE_NUMBERS || attribute->components < 3 || !loader->scene->color)
+            continue;
+        if (ty_color_convert(loader->scene->color, space, "ACEScg", attribute->values, (int)mesh->vertex_count,
+                             attribute->components, &error) != TY_OK)
+            ty_log(TY_LOG_WARNING, "vertex colours '%s' are taken as ACEScg: %s", attribute->name, error.text);
+        attribute->space = TY_ATTRIBUTE_NUMBERS;
+    }
+}
+
+// What shading and tracing expect of every mesh.
+static void complete_mesh(const ty_loader* loader, ty_mesh* mesh)
+{
+    convert_colors(loader, mesh);
     if (!mesh->welds)
         ty_mesh_compute_welds(mesh);
     if (!mesh->curvature_1)
@@ -37,7 +55,7 @@ static void complete_mesh(ty_mesh* mesh)
 
 static void keep_mesh(ty_loader* loader, ty_mesh* mesh)
 {
-    complete_mesh(mesh);
+    complete_mesh(loader, mesh);
     struct ty_scene_resources* resources = loader->scene->resources;
     resources->meshes[resources->mesh_count++] = mesh;
 }
@@ -45,7 +63,10 @@ static void keep_mesh(ty_loader* loader, ty_mesh* mesh)
 static void keep_aggregate(ty_loader* loader, ty_aggregate* aggregate)
 {
     for (int i = 0; i < aggregate->prototype_count; ++i)
-        complete_mesh(aggregate->prototypes[i]);
+        complete_mesh(loader, aggregate->prototypes[i]);
+    if (!ty_mesh_share_slots(aggregate->prototypes, aggregate->prototype_count))
+        ty_log(TY_LOG_WARNING, "an aggregate has more than %d materials: its slots are not told apart",
+               TY_MESH_MAX_SLOTS);
     struct ty_scene_resources* resources = loader->scene->resources;
     resources->aggregates[resources->aggregate_count++] = aggregate;
 }

@@ -53,7 +53,8 @@ typedef struct ty_object_entry
 {
     ty_object_def def;
     ty_place place;
-    int asset, material; // -1 = wrong, reported
+    int asset, material;  // -1 = wrong, reported
+    const ty_node* slots; // `materials`, NULL = none
     ty_affine transform;
 } ty_object_entry;
 
@@ -145,6 +146,8 @@ int ty_texture_index(ty_loader* loader, const ty_texture_def* def, ty_place plac
 // asset_load.c: files to memory (everything named when only checking, else what objects use)
 void ty_load_textures(ty_loader* loader);
 void ty_load_assets(ty_loader* loader);
+// scene_slots.c: the materials of each slot, once the meshes are known
+void ty_resolve_slots(ty_loader* loader);
 // scene_world.c: attributes, objects, trees, depth fields, the shading context
 void ty_build_attributes(ty_loader* loader);
 void ty_build_world(ty_loader* loader);

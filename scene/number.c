@@ -105,6 +105,7 @@ void ty_param_expected(const ty_param* row, ty_text* out)
         [TY_PARAM_COLOR_INPUT] = "a colour, { texture, value, scale, offset } or { attribute, ... }",
         [TY_PARAM_GROUP] = "a mapping",
         [TY_PARAM_LIST] = "a list of mappings",
+        [TY_PARAM_NAMES] = "a mapping of names to names",
     };
     if (row->type == TY_PARAM_ENUM)
     {
@@ -140,6 +141,7 @@ const char* ty_param_type_name(ty_param_type type)
         [TY_PARAM_COLOR_INPUT] = "colour input",
         [TY_PARAM_GROUP] = "mapping",
         [TY_PARAM_LIST] = "list",
+        [TY_PARAM_NAMES] = "names",
     };
     return names[type];
 }
@@ -191,6 +193,7 @@ void ty_param_value_text(const ty_param* row, const void* def, ty_text* out)
         break;
     case TY_PARAM_GROUP:
     case TY_PARAM_LIST:
+    case TY_PARAM_NAMES:
         break;
     }
 }

@@ -170,6 +170,25 @@ static bool read_list(ty_reader* reader, ty_node* node, const ty_param* row, ty_
     return good;
 }
 
+static bool read_names(ty_reader* reader, ty_node* node, const ty_param* row, ty_param_list* out)
+{
+    if (node->kind != TY_NODE_MAP)
+    {
+        ty_param_report_type(reader, node, row);
+        return false;
+    }
+    ty_param_name* names = TY_ARENA_ALLOC(reader->arena, ty_param_name, node->count);
+    bool good = true;
+    for (int i = 0; i < node->count; ++i)
+    {
+        const ty_param named = {.name = node->keys[i].text, .type = TY_PARAM_STRING, .unit = ""};
+        names[i].key = ty_arena_string(reader->arena, node->keys[i].text);
+        good &= read_string(reader, node->items[i], &named, &names[i].value);
+    }
+    *out = (ty_param_list){names, node->count};
+    return good;
+}
+
 // Keys of a group within a struct: the defaults are the struct's, not the group's.
 static bool read_keys(ty_reader* reader, ty_node* node, const ty_param_table* table, void* def,
                       const char* const* skip);
@@ -207,6 +226,8 @@ bool ty_param_read(ty_reader* reader, ty_node* node, const ty_param* row, void* 
         return read_keys(reader, node, row->group, field, NULL);
     case TY_PARAM_LIST:
         return read_list(reader, node, row, field);
+    case TY_PARAM_NAMES:
+        return read_names(reader, node, row, field);
     }
     return false;
 }

@@ -84,6 +84,7 @@ static void load_stages(ty_loader* loader, int first)
         return;
     ty_load_textures(loader);
     ty_load_assets(loader);
+    ty_resolve_slots(loader);
     ty_build_attributes(loader);
     if (loader->errors->count > first)
         return;

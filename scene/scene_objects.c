@@ -50,16 +50,35 @@ static void find_asset(ty_loader* loader, const ty_node* node, ty_object_entry* 
                   mesh ? "mesh or shape" : "aggregate");
 }
 
-static void find_material(ty_loader* loader, const ty_node* node, ty_object_entry* entry)
+static int find_material(ty_loader* loader, const ty_node* name)
 {
     char nearest[TY_NEAREST_SIZE];
-    const ty_node* name = ty_node_get(node, "material");
-    if (!name || name->kind != TY_NODE_SCALAR || !name->text[0])
-        return;
-    entry->material = ty_node_find(loader->material_map, name->text);
-    if (entry->material < 0)
+    if (name->kind != TY_NODE_SCALAR || !name->text[0])
+        return -1;
+    int found = ty_node_find(loader->material_map, name->text);
+    if (found < 0)
         ty_report(loader->errors, name->place, TY_BAD_INPUT, "no material '%.200s'%s", name->text,
                   ty_nearest_key(name->text, loader->material_map, nearest));
+    return found;
+}
+
+// What the slots mean is known when the mesh is; that every material exists, here. The first of the slots takes what
+// nobody names.
+static void find_materials(ty_loader* loader, const ty_node* node, ty_object_entry* entry)
+{
+    const ty_node *name = ty_node_get(node, "material"), *slots = ty_node_get(node, "materials");
+    bool has_slots = slots && slots->kind == TY_NODE_MAP && slots->count > 0;
+    if (!name && (!slots || ty_node_is_empty(slots)) && !(slots && slots->bad))
+        ty_report(loader->errors, node->place, TY_BAD_INPUT, "missing key 'material' (or 'materials') of an object");
+    if (name)
+        entry->material = find_material(loader, name);
+    for (int i = 0; has_slots && i < slots->count; ++i)
+    {
+        int found = find_material(loader, slots->items[i]);
+        if (!name && i == 0)
+            entry->material = found;
+    }
+    entry->slots = has_slots ? slots : NULL;
 }
 
 static void place_object(ty_loader* loader, const ty_node* node, ty_object_entry* entry)
@@ -91,7 +110,7 @@ void ty_read_objects(ty_loader* loader)
         if (node->kind != TY_NODE_MAP || node->bad)
             continue;
         find_asset(loader, node, entry);
-        find_material(loader, node, entry);
+        find_materials(loader, node, entry);
         if (good)
             place_object(loader, node, entry);
         scene->objects[i].name = entry->def.name ? entry->def.name : ty_arena_format(loader->arena, "object%d", i);

@@ -10,6 +10,7 @@ typedef struct ty_object_def
     const char* mesh;      // asset
     const char* aggregate; // asset
     const char* material;
+    ty_param_list materials;          // of ty_param_name: slot, material
     ty_vec3 translate, rotate, scale; // m, radians, 1
 } ty_object_def;
 

@@ -5,22 +5,51 @@
 #include <string.h>
 #include <tsuya/base/log.h>
 
-// An object's aggregate must have every attribute that its material uses.
+// The meshes of an asset: one, or an aggregate's prototypes.
+typedef struct meshes
+{
+    ty_mesh* const* items;
+    int count;
+} meshes;
+
+static meshes asset_meshes(const ty_asset* asset)
+{
+    if (asset->aggregate)
+        return (meshes){asset->aggregate->prototypes, asset->aggregate->prototype_count};
+    return (meshes){&asset->mesh, asset->mesh ? 1 : 0};
+}
+
+static bool has_attribute(const ty_asset* asset, const char* name)
+{
+    if (asset->aggregate && ty_aggregate_find_attribute(asset->aggregate, name))
+        return true;
+    meshes all = asset_meshes(asset);
+    for (int i = 0; i < all.count; ++i)
+        if (!ty_mesh_find_attribute(all.items[i], name))
+            return false;
+    return all.count > 0;
+}
+
+// What an object's material takes from an attribute must be there: of the instances, else of the vertices.
 static void check_attribute(ty_loader* loader, const ty_object_entry* entry, const ty_attribute_use* use)
 {
     const ty_asset* asset = &loader->assets[entry->asset];
     const char* name = loader->scene->attribute_names[use->attribute];
-    if (ty_aggregate_find_attribute(asset->aggregate, name))
+    if (has_attribute(asset, name))
         return;
-    int count = asset->aggregate->attribute_count;
-    const char** names = TY_ALLOC(const char*, count);
-    for (int i = 0; i < count; ++i)
-        names[i] = asset->aggregate->attributes[i].name;
+    meshes all = asset_meshes(asset);
+    int of_instances = asset->aggregate ? asset->aggregate->attribute_count : 0, count = 0;
+    const char** names = TY_ALLOC(const char*, of_instances + all.items[0]->attribute_count);
+    for (int i = 0; i < of_instances; ++i)
+        names[count++] = asset->aggregate->attributes[i].name;
+    for (int i = 0; i < all.items[0]->attribute_count; ++i)
+        if (has_attribute(asset, all.items[0]->attributes[i].name))
+            names[count++] = all.items[0]->attributes[i].name;
     char nearest[TY_NEAREST_SIZE];
     ty_nearest(name, names, count, nearest);
     ty_free(names);
-    ty_report(loader->errors, use->place, TY_BAD_INPUT, "aggregate '%.100s' has no attribute '%.100s'%s", asset->name,
-              name, count ? nearest : "; it has none");
+    ty_report(loader->errors, use->place, TY_BAD_INPUT, "%s '%.100s' has no attribute '%.100s'%s",
+              asset->aggregate ? "aggregate" : "mesh", asset->name, name, count ? nearest : "; it has none");
 }
 
 static void set_attributes(ty_loader* loader, ty_scene_object* object, const ty_aggregate* aggregate)
@@ -37,16 +66,24 @@ static void set_attributes(ty_loader* loader, ty_scene_object* object, const ty_
     object->instance_count = aggregate ? aggregate->instance_count : 1;
 }
 
+static bool shows_material(const ty_scene_object* object, int material)
+{
+    for (uint32_t k = 0; k < ty_scene_material_count(object); ++k)
+        if (ty_scene_material_at(object, k) == (uint32_t)material)
+            return true;
+    return false;
+}
+
 void ty_build_attributes(ty_loader* loader)
 {
     ty_scene* scene = loader->scene;
     for (int i = 0; i < scene->object_count; ++i)
     {
         const ty_object_entry* entry = &loader->objects[i];
-        const ty_aggregate* aggregate = entry->asset >= 0 ? loader->assets[entry->asset].aggregate : NULL;
-        set_attributes(loader, &scene->objects[i], aggregate);
-        for (int u = 0; aggregate && u < loader->use_count; ++u)
-            if (loader->uses[u].material == entry->material)
+        const ty_asset* asset = entry->asset >= 0 ? &loader->assets[entry->asset] : NULL;
+        set_attributes(loader, &scene->objects[i], asset ? asset->aggregate : NULL);
+        for (int u = 0; asset && asset_meshes(asset).count > 0 && u < loader->use_count; ++u)
+            if (shows_material(&scene->objects[i], loader->uses[u].material))
                 check_attribute(loader, entry, &loader->uses[u]);
     }
 }
@@ -65,11 +102,27 @@ static bool is_closed(const ty_mesh* mesh, const char* name)
     return topology.closed;
 }
 
-static void warn_untextured(ty_loader* loader, const ty_object_entry* entry, const ty_mesh* mesh, const char* name)
+static void warn_untextured(const ty_loader* loader, const ty_scene_object* object, const ty_mesh* mesh,
+                            const char* name)
 {
-    if (loader->textured[entry->material] && !mesh->uvs)
-        ty_log(TY_LOG_WARNING, "'%s' has no texture coordinates: textures of material '%s' are constant on it", name,
-               loader->scene->material_names[entry->material]);
+    for (uint32_t k = 0; !mesh->uvs && k < ty_scene_material_count(object); ++k)
+        if (loader->textured[ty_scene_material_at(object, k)])
+            ty_log(TY_LOG_WARNING, "'%s' has no texture coordinates: textures of material '%s' are constant on it",
+                   name, loader->scene->material_names[ty_scene_material_at(object, k)]);
+}
+
+static ty_object_flags object_flags(const ty_loader* loader, const ty_scene_object* object, const ty_asset* asset)
+{
+    ty_object_flags flags = {.camera_visible = true};
+    for (uint32_t k = 0; k < ty_scene_material_count(object); ++k)
+        flags.closed_subsurface |= ty_material_is_subsurface(loader->scene->materials[ty_scene_material_at(object, k)]);
+    meshes all = asset_meshes(asset);
+    for (int i = 0; i < all.count; ++i)
+    {
+        flags.closed_subsurface = flags.closed_subsurface && is_closed(all.items[i], asset->name);
+        warn_untextured(loader, object, all.items[i], asset->name);
+    }
+    return flags;
 }
 
 static ty_status add_object(ty_loader* loader, int index, ty_error* error)
@@ -77,24 +130,15 @@ static ty_status add_object(ty_loader* loader, int index, ty_error* error)
     ty_scene* scene = loader->scene;
     const ty_object_entry* entry = &loader->objects[index];
     const ty_asset* asset = &loader->assets[entry->asset];
-    const ty_material* material = scene->materials[entry->material];
-    ty_object_flags flags = {.closed_subsurface = ty_material_is_subsurface(material), .camera_visible = true};
+    ty_object_flags flags = object_flags(loader, &scene->objects[index], asset);
     uint32_t number = 0, prototype = 0;
     ty_status status = TY_OK;
     if (asset->aggregate)
     {
-        for (int i = 0; i < asset->aggregate->prototype_count; ++i)
-        {
-            const ty_mesh* mesh = asset->aggregate->prototypes[i];
-            flags.closed_subsurface = flags.closed_subsurface && is_closed(mesh, asset->name);
-            warn_untextured(loader, entry, mesh, asset->name);
-        }
         status = ty_world_add_aggregate(scene->world, asset->aggregate, &entry->transform, flags, &number, error);
     }
     else
     {
-        flags.closed_subsurface = flags.closed_subsurface && is_closed(asset->mesh, asset->name);
-        warn_untextured(loader, entry, asset->mesh, asset->name);
         status = ty_world_add_prototype(scene->world, asset->mesh, &prototype, error);
         if (status == TY_OK)
             status = ty_world_add_object(scene->world, prototype, &entry->transform, flags, &number, error);
@@ -103,10 +147,18 @@ static ty_status add_object(ty_loader* loader, int index, ty_error* error)
     return status;
 }
 
+static bool shows_depth(const ty_scene* scene, const ty_scene_object* object)
+{
+    for (uint32_t k = 0; k < ty_scene_material_count(object); ++k)
+        if (ty_material_needs_depth(scene->materials[ty_scene_material_at(object, k)]))
+            return true;
+    return false;
+}
+
 static void need_depth(ty_loader* loader, int object, bool* needed)
 {
     ty_scene* scene = loader->scene;
-    if (!ty_material_needs_depth(scene->materials[scene->objects[object].material]))
+    if (!shows_depth(scene, &scene->objects[object]))
         return;
     for (uint32_t i = 0; i < scene->objects[object].instance_count; ++i)
         needed[ty_world_prototype(scene->world, (uint32_t)object, i)] = true;
@@ -131,6 +183,23 @@ static ty_status make_depth_fields(ty_loader* loader, ty_error* error)
     return status;
 }
 
+// By prototype, in the order of attribute names.
+static const ty_mesh_attribute* const* const* vertex_attributes(ty_loader* loader)
+{
+    ty_scene* scene = loader->scene;
+    uint32_t count = ty_world_prototype_count(scene->world);
+    const ty_mesh_attribute* const** all = TY_ARENA_ALLOC(loader->arena, const ty_mesh_attribute* const*, count);
+    for (uint32_t i = 0; i < count; ++i)
+    {
+        const ty_mesh_attribute** found =
+            TY_ARENA_ALLOC(loader->arena, const ty_mesh_attribute*, scene->attribute_count);
+        for (int k = 0; k < scene->attribute_count; ++k)
+            found[k] = ty_mesh_find_attribute(ty_world_prototype_mesh(scene->world, i), scene->attribute_names[k]);
+        all[i] = found;
+    }
+    return all;
+}
+
 static void set_shading(ty_loader* loader)
 {
     ty_scene* scene = loader->scene;
@@ -143,7 +212,8 @@ static void set_shading(ty_loader* loader)
     scene->shading = (ty_shading_context){.world = scene->world,
                                           .textures = (const ty_texture* const*)scene->textures,
                                           .depth_fields = (const ty_depth_field* const*)scene->depth_fields,
-                                          .object_attributes = attributes};
+                                          .object_attributes = attributes,
+                                          .vertex_attributes = vertex_attributes(loader)};
 }
 
 // The world has its own copies of where instances stand.

@@ -1,13 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// Inputs at a point: a constant, times a texture or a per-instance attribute.
+// Inputs at a point: a constant, times a texture or an attribute.
 #include <tsuya/shading/material.h>
 
-static float attribute_factor(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)
+static ty_rgb vertex_value(const ty_mesh_attribute* attribute, const ty_shading_context* context,
+                           const ty_surface_point* point)
 {
-    if (!context->object_attributes || !context->object_attributes[point->object])
-        return 1.0f;
-    const float* values = context->object_attributes[point->object][input->attribute_index];
-    return values ? input->offset + input->scale * values[point->instance] : 1.0f;
+    float v[4];
+    ty_world_interpolate_attribute(context->world, point, attribute, v);
+    return attribute->components == 1 ? ty_rgb_grey(v[0]) : ty_rgb_make(v[0], v[1], v[2]);
+}
+
+// Attributes of instances come before those of vertices. 1 where there is neither.
+static ty_rgb attribute_factor(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)
+{
+    const float* const* of_object = context->object_attributes ? context->object_attributes[point->object] : NULL;
+    const float* values = of_object ? of_object[input->attribute_index] : NULL;
+    if (values)
+        return ty_rgb_grey(input->offset + input->scale * values[point->instance]);
+    if (!context->vertex_attributes)
+        return ty_rgb_grey(1.0f);
+    uint32_t prototype = ty_world_prototype(context->world, point->object, point->instance);
+    const ty_mesh_attribute* attribute = context->vertex_attributes[prototype][input->attribute_index];
+    if (!attribute)
+        return ty_rgb_grey(1.0f);
+    ty_rgb value = vertex_value(attribute, context, point);
+    return ty_rgb_add(ty_rgb_grey(input->offset), ty_rgb_scale(value, input->scale));
 }
 
 ty_rgb ty_input_color(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)
@@ -18,7 +35,7 @@ ty_rgb ty_input_color(const ty_input* input, const ty_shading_context* context, 
         return ty_rgb_mul(input->value, ty_rgb_add(ty_rgb_grey(input->offset), ty_rgb_scale(texel, input->scale)));
     }
     if (input->attribute_index >= 0)
-        return ty_rgb_scale(input->value, attribute_factor(input, context, point));
+        return ty_rgb_mul(input->value, attribute_factor(input, context, point));
     return input->value;
 }
 

@@ -48,6 +48,35 @@ static void solids_come_in_whole(void** state)
     check_solid("tetrahedron.stl", 4, 4.5, 13.5 + 7.794228634);
 }
 
+// Slots in the order of use; a material that nothing uses is none; colours of vertices are kept.
+static void slots_have_the_files_names(void** state)
+{
+    (void)state;
+    write_text("slots.obj", "mtllib slots.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nv 1 1 0 1 1 1\n"
+                            "usemtl Leaf\nf 1 2 3\nusemtl Bark\nf 2 4 3\n");
+    write_text("slots.mtl", "newmtl Bark\nKd 1 0 0\nnewmtl Unused\nKd 0 1 0\nnewmtl Leaf\nKd 0 0 1\n");
+    ty_mesh* mesh;
+    ty_error error;
+    assert_int_equal(ty_mesh_read("slots.obj", &mesh, &error), TY_OK);
+    assert_int_equal(mesh->slot_count, 2);
+    assert_int_equal(mesh->triangle_count, 2);
+    for (uint32_t t = 0; t < 2; t++)
+    {
+        bool is_leaf = mesh->positions[mesh->triangles[t][0]].x + mesh->positions[mesh->triangles[t][1]].x +
+                           mesh->positions[mesh->triangles[t][2]].x <
+                       1.5f;
+        assert_string_equal(mesh->slot_names[mesh->slots[t]], is_leaf ? "Leaf" : "Bark");
+    }
+    const ty_mesh_attribute* color = ty_mesh_find_attribute(mesh, "color");
+    assert_true(color && color->components == 4 && color->space == TY_ATTRIBUTE_SRGB);
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+    {
+        bool at_origin = ty_length_sqr(mesh->positions[v]) == 0.0f;
+        assert_true(!at_origin || (color->values[4 * v] == 1.0f && color->values[4 * v + 1] == 0.0f));
+    }
+    ty_mesh_destroy(mesh);
+}
+
 static void refused(const char* path, const char* says)
 {
     ty_mesh* mesh = (ty_mesh*)1;
@@ -85,6 +114,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(solids_come_in_whole),
+        cmocka_unit_test(slots_have_the_files_names),
         cmocka_unit_test(faults_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

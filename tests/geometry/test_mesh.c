@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Meshes: validation, welds, normals with creases, topology, convexity, copies, transforms and attributes.
 #include <base/cmocka_all.h>
+#include <stdio.h>
 #include <string.h>
 #include <tsuya/geometry/shape.h>
 
@@ -397,6 +398,56 @@ static void test_attributes_are_found_again(void** state)
     ty_mesh_destroy(mesh);
 }
 
+// --- material slots ---
+
+static void test_slots_are_shared_by_name(void** state)
+{
+    (void)state;
+    ty_mesh* meshes[3] = {make_cube(), make_cube(), make_cube()};
+    assert_int_equal(ty_mesh_add_slot(meshes[0], "bark"), 0);
+    assert_int_equal(ty_mesh_add_slot(meshes[0], "leaf"), 1);
+    assert_int_equal(ty_mesh_add_slot(meshes[0], "bark"), 0);
+    meshes[0]->slots = TY_ALLOC(uint16_t, 12);
+    meshes[0]->slots[5] = 1;
+    assert_int_equal(ty_mesh_add_slot(meshes[2], "leaf"), 0);
+    assert_true(ty_mesh_share_slots(meshes, 3));
+    for (int i = 0; i < 3; i++)
+    {
+        assert_int_equal(meshes[i]->slot_count, 3);
+        assert_int_equal(ty_mesh_validate(meshes[i], "m", NULL), TY_OK);
+    }
+    assert_string_equal(meshes[0]->slot_names[meshes[0]->slots[5]], "leaf");
+    assert_string_equal(meshes[0]->slot_names[meshes[0]->slots[6]], "bark");
+    assert_string_equal(meshes[1]->slot_names[meshes[1]->slots[0]], "");
+    assert_string_equal(meshes[2]->slot_names[meshes[2]->slots[11]], "leaf");
+    ty_mesh* copy = ty_mesh_copy(meshes[0]);
+    assert_true(copy->slots != meshes[0]->slots && copy->slots[5] == meshes[0]->slots[5]);
+    assert_true(copy->slot_names[1] != meshes[0]->slot_names[1]);
+    copy->slots[7] = 3;
+    assert_invalid(copy, "triangle 7 has material slot 3 of 3");
+    ty_mesh_destroy(copy);
+    for (int i = 0; i < 3; i++)
+        ty_mesh_destroy(meshes[i]);
+}
+
+static void test_slots_are_bounded(void** state)
+{
+    (void)state;
+    ty_mesh* mesh = make_cube();
+    for (int i = 0; i < TY_MESH_MAX_SLOTS; i++)
+    {
+        char name[16];
+        snprintf(name, sizeof name, "s%d", i);
+        assert_int_equal(ty_mesh_add_slot(mesh, name), i);
+    }
+    assert_int_equal(ty_mesh_add_slot(mesh, "one more"), -1);
+    ty_mesh* meshes[2] = {mesh, make_cube()};
+    assert_false(ty_mesh_share_slots(meshes, 2));
+    assert_int_equal(meshes[1]->slot_count, 0);
+    ty_mesh_destroy(meshes[1]);
+    ty_mesh_destroy(mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -418,6 +469,8 @@ int main(void)
         cmocka_unit_test(test_copy_is_deep),
         cmocka_unit_test(test_mirror_keeps_the_outside_out),
         cmocka_unit_test(test_attributes_are_found_again),
+        cmocka_unit_test(test_slots_are_shared_by_name),
+        cmocka_unit_test(test_slots_are_bounded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,6 +45,42 @@ static void reads_polygons_and_properties(void** state)
     ty_mesh_destroy(mesh);
 }
 
+static void colours_come_joined(void** state)
+{
+    (void)state;
+    ty_mesh* mesh;
+    ty_mesh* again;
+    ty_error error;
+    const char* bytes =
+        HEADER("ascii", "3") "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                             "property uchar alpha\n" FACES("1") "0 0 0 255 0 51 255\n"
+                                                                 "1 0 0 1 2 3 4\n0 1 0 9 8 7 6\n3 0 1 2\n";
+    assert_int_equal(read_text(bytes, &mesh, &error), TY_OK);
+    const ty_mesh_attribute* color = ty_mesh_find_attribute(mesh, "color");
+    assert_non_null(color);
+    assert_true(mesh->attribute_count == 1 && color->components == 4 && color->space == TY_ATTRIBUTE_SRGB);
+    assert_true(color->values[0] == 1.0f && fabsf(color->values[2] - 0.2f) < 1e-6f);
+    assert_true(fabsf(color->values[9] - 8.0f / 255.0f) < 1e-6f);
+    assert_int_equal(ty_ply_write("color.ply", mesh, &error), TY_OK);
+    assert_int_equal(ty_mesh_read("color.ply", &again, &error), TY_OK);
+    assert_memory_equal(color->values, ty_mesh_find_attribute(again, "color")->values, 12 * sizeof(float));
+    ty_mesh_destroy(again);
+    ty_mesh_destroy(mesh);
+    // floats are linear; a scalar called color keeps them apart
+    const char* floats = HEADER("ascii", "3") "property float red\nproperty float green\nproperty float blue\n" FACES(
+        "1") "0 0 0 1 0 .5\n1 0 0 1 2 3\n0 1 0 9 8 7\n3 0 1 2\n";
+    assert_int_equal(read_text(floats, &mesh, &error), TY_OK);
+    assert_int_equal(ty_mesh_find_attribute(mesh, "color")->space, TY_ATTRIBUTE_LINEAR_SRGB);
+    ty_mesh_destroy(mesh);
+    const char* clash = HEADER("ascii", "3") "property float color\nproperty float red\nproperty float green\n"
+                                             "property float blue\n" FACES("1") "0 0 0 1 0 .5 1\n1 0 0 1 2 3 1\n"
+                                                                                "0 1 0 9 8 7 1\n3 0 1 2\n";
+    assert_int_equal(read_text(clash, &mesh, &error), TY_OK);
+    assert_int_equal(ty_mesh_find_attribute(mesh, "color")->components, 1);
+    assert_int_equal(mesh->attribute_count, 4);
+    ty_mesh_destroy(mesh);
+}
+
 static void big_and_little_endian_agree(void** state)
 {
     (void)state;
@@ -158,6 +194,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_polygons_and_properties),
+        cmocka_unit_test(colours_come_joined),
         cmocka_unit_test(big_and_little_endian_agree),
         cmocka_unit_test(written_bytes_come_back),
         cmocka_unit_test(faults_are_named),

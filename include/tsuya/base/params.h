@@ -24,14 +24,15 @@ typedef enum ty_param_type
     TY_PARAM_COLOR_INPUT,  // ty_input with three channels
     TY_PARAM_GROUP,        // a nested struct in place, described by group
     TY_PARAM_LIST,         // ty_param_list of structs described by group
+    TY_PARAM_NAMES,        // ty_param_list of ty_param_name: a mapping of names to names
 } ty_param_type;
 
-// A parameter of a surface: a constant, optionally times a texture or a per-instance attribute.
+// A parameter of a surface: a constant, optionally times a texture or an attribute.
 typedef struct ty_input
 {
     ty_rgb value;          // a scalar uses .r
     const char* texture;   // asset name or path, NULL = none
-    const char* attribute; // per-instance attribute name, NULL = none
+    const char* attribute; // name of an attribute of instances, else of vertices; NULL = none
     float scale, offset;   // applied to what the texture or attribute gives: offset + scale * x
     int texture_index;     // set by scene/, -1 = none
     int attribute_index;   // set by scene/, -1 = none
@@ -51,6 +52,12 @@ typedef struct ty_param_list
     void* items; // count structs of group->size bytes, owned by the reader's arena
     int count;
 } ty_param_list;
+
+// An entry of TY_PARAM_NAMES.
+typedef struct ty_param_name
+{
+    const char *key, *value;
+} ty_param_name;
 
 typedef struct ty_param_table ty_param_table;
 

@@ -6,11 +6,20 @@
 #include <tsuya/base/memory.h>
 #include <tsuya/base/status.h>
 
+// What the numbers of a vertex attribute are; colours are brought to the scene's space by who uses the mesh.
+typedef enum ty_attribute_space
+{
+    TY_ATTRIBUTE_NUMBERS,     // as they are, scene-linear colours among them
+    TY_ATTRIBUTE_SRGB,        // colours encoded as in 8-bit images
+    TY_ATTRIBUTE_LINEAR_SRGB, // linear, Rec.709 primaries
+} ty_attribute_space;
+
 typedef struct ty_mesh_attribute
 {
     char name[32];
-    int components; // 1..4
-    float* values;  // [vertex_count][components]
+    int components;           // 1..4
+    ty_attribute_space space; // of the first three components when there are three or four
+    float* values;            // [vertex_count][components]
 } ty_mesh_attribute;
 
 // Arrays are owned and freed by ty_mesh_destroy; optional ones are NULL when absent. Const once in use by the tracer.
@@ -27,6 +36,9 @@ typedef struct ty_mesh
     ty_vec3* direction_1;     // unit tangent of curvature_1
     ty_mesh_attribute* attributes;
     int attribute_count;
+    uint16_t* slots;   // [triangle_count] material slot, below slot_count (NULL = all 0)
+    char** slot_names; // [slot_count], as the file names its materials; no two equal
+    int slot_count;    // 0 = the file names none
     ty_bounds bounds;
 } ty_mesh;
 
@@ -68,3 +80,11 @@ void ty_mesh_smooth_field(const ty_mesh* mesh, float* field, float width);
 const ty_mesh_attribute* ty_mesh_find_attribute(const ty_mesh* mesh, const char* name);
 // Adds (or finds) an attribute of zeros; the values are owned by the mesh.
 float* ty_mesh_add_attribute(ty_mesh* mesh, const char* name, int components);
+
+#define TY_MESH_MAX_SLOTS 4096
+
+// The index of a slot of that name, added when there is none. -1 when there are TY_MESH_MAX_SLOTS already.
+int ty_mesh_add_slot(ty_mesh* mesh, const char* name);
+// Gives meshes one list of slots: equal names share a number, triangles are renumbered. A mesh that names no slot gets
+// one of the empty name where others name some. False when they are too many together; then nothing has changed.
+bool ty_mesh_share_slots(ty_mesh* const* meshes, int count);

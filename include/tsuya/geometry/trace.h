@@ -121,6 +121,9 @@ typedef struct ty_surface_point
 void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point* out);
 // A mesh field interpolated at the hit (per-vertex array of the instance's prototype).
 float ty_world_interpolate(const ty_world* world, const ty_surface_point* point, const float* vertex_field);
+// The same of an attribute; components that it lacks are 0.
+void ty_world_interpolate_attribute(const ty_world* world, const ty_surface_point* point,
+                                    const ty_mesh_attribute* attribute, float out[4]);
 
 // How the position moves with uv, in world space and the triangle's plane. False (and zeros) without uv, or where the
 // triangle has no area on the surface or in uv.

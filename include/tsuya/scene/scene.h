@@ -94,7 +94,9 @@ const ty_param_table* ty_light_params(void);
 typedef struct ty_scene_object
 {
     const char* name;               // as in the file, or "object3"
-    uint32_t material;              // index
+    uint32_t material;              // index; with slots: what is left without one of its own
+    const uint32_t* slot_materials; // [slot_count] by the mesh's material slots, or NULL: `material` everywhere
+    uint32_t slot_count;
     const float* const* attributes; // [attribute_count] -> [instances] or NULL
     const uint32_t* ids;            // [instances] from the aggregate file, or NULL
     uint32_t instance_count;
@@ -157,6 +159,27 @@ TY_CHECKED ty_status ty_scene_load(const char* path, const ty_scene_options* opt
 TY_CHECKED ty_status ty_scene_load_memory(const char* name, const void* bytes, size_t size,
                                           const ty_scene_options* options, ty_scene** out, ty_error_list* errors);
 void ty_scene_destroy(ty_scene* scene); // NULL is allowed
+
+// The material of a triangle of an object's instance.
+static inline const ty_material* ty_scene_material(const ty_scene* scene, uint32_t object, uint32_t instance,
+                                                   uint32_t triangle)
+{
+    const ty_scene_object* o = &scene->objects[object];
+    if (!o->slot_materials)
+        return scene->materials[o->material];
+    const uint16_t* slots = ty_world_mesh(scene->world, object, instance)->slots;
+    return scene->materials[o->slot_materials[slots ? slots[triangle] : 0]];
+}
+
+// The materials that an object may show: index k of count.
+static inline uint32_t ty_scene_material_count(const ty_scene_object* object)
+{
+    return object->slot_materials ? object->slot_count : 1;
+}
+static inline uint32_t ty_scene_material_at(const ty_scene_object* object, uint32_t k)
+{
+    return object->slot_materials ? object->slot_materials[k] : object->material;
+}
 
 // Makes the asset of a recipe file and writes it to output (".glb"), without the cache.
 TY_CHECKED ty_status ty_recipe_make(const char* recipe, const char* output, const ty_scene_options* options,

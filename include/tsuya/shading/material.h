@@ -87,10 +87,12 @@ typedef struct ty_shading_context
     const ty_texture* const* textures;            // by texture_index
     const ty_depth_field* const* depth_fields;    // by prototype, NULL entries where not needed
     const float* const* const* object_attributes; // [object][attribute_index] -> [instance], NULL where absent
+    const ty_mesh_attribute* const* const* vertex_attributes; // [prototype][attribute_index], NULL where absent
 } ty_shading_context;
 
 // The value of an input at a point: value * (offset + scale * texel or attribute); value alone where neither is
-// present.
+// present. An attribute is that of the instance, else that of the mesh's vertices: one component is grey, of two the
+// third is 0, a fourth is left out; a float takes the first.
 ty_rgb ty_input_color(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point);
 float ty_input_float(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point);
 
