@@ -115,11 +115,10 @@ static bool append_range(char* text, size_t size, int first, int last)
 {
     char range[32];
     size_t used = strlen(text);
-    int length = first == last ? snprintf(range, sizeof range, "%d", first)
-                               : snprintf(range, sizeof range, "%d-%d", first, last);
-    bool fits = used + (size_t)length + sizeof(", ...") < size;
-    if (used + sizeof(", ...") <= size)
-        snprintf(text + used, size - used, "%s%s", used ? ", " : "", fits ? range : "...");
+    int length = first == last ? snprintf(range, sizeof range, "%s%d", used ? ", " : "", first)
+                               : snprintf(range, sizeof range, "%s%d-%d", used ? ", " : "", first, last);
+    bool fits = used + (size_t)length + sizeof(", ...") <= size;
+    snprintf(text + used, size - used, "%s", fits ? range : used ? ", ..." : "...");
     return fits;
 }
 
