@@ -86,6 +86,16 @@ static ty_status info_exr(const char* path, bool recipe, json_t** out, ty_error*
     return status;
 }
 
+static ty_status print_recipe(const char* path, const char* recipe, ty_error* error)
+{
+    if (!recipe)
+    {
+        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "holds no recipe");
+    }
+    fputs(recipe, stdout);
+    return TY_OK;
+}
+
 static ty_status info_aggregate(const char* path, bool recipe, json_t** out, ty_error* error)
 {
     ty_aggregate* aggregate;
@@ -96,8 +106,7 @@ static ty_status info_aggregate(const char* path, bool recipe, json_t** out, ty_
     }
     if (recipe)
     {
-        status = aggregate->recipe ? TY_OK : ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "holds no recipe");
-        fputs(aggregate->recipe ? aggregate->recipe : "", stdout);
+        status = print_recipe(path, aggregate->recipe, error);
         ty_aggregate_destroy(aggregate);
         return status;
     }
@@ -114,12 +123,18 @@ static ty_status info_aggregate(const char* path, bool recipe, json_t** out, ty_
     return TY_OK;
 }
 
-static ty_status info_mesh(const char* path, json_t** out, ty_error* error)
+static ty_status info_mesh(const char* path, bool recipe, json_t** out, ty_error* error)
 {
     ty_mesh* mesh;
     ty_status status = ty_mesh_read(path, &mesh, error);
     if (status != TY_OK)
     {
+        return status;
+    }
+    if (recipe)
+    {
+        status = print_recipe(path, mesh->recipe, error);
+        ty_mesh_destroy(mesh);
         return status;
     }
     ty_mesh_topology topology;
@@ -130,12 +145,12 @@ static ty_status info_mesh(const char* path, json_t** out, ty_error* error)
         json_array_append_new(attributes, json_string(mesh->attributes[i].name));
     }
     ty_vec3 low = mesh->bounds.low, high = mesh->bounds.high;
-    *out = json_pack("{s:s, s:i, s:i, s:i, s:i, s:b, s:b, s:f, s:f, s:[f, f, f], s:[f, f, f], s:o}", "type", "mesh",
-                     "vertices", (int)mesh->vertex_count, "triangles", (int)mesh->triangle_count, "components",
+    *out = json_pack("{s:s, s:i, s:i, s:i, s:i, s:b, s:b, s:f, s:f, s:[f, f, f], s:[f, f, f], s:o, s:s?}", "type",
+                     "mesh", "vertices", (int)mesh->vertex_count, "triangles", (int)mesh->triangle_count, "components",
                      (int)topology.components, "boundary_edges", (int)topology.boundary_edges, "closed",
                      topology.closed, "convex", topology.convex, "area", topology.area, "volume", topology.volume,
                      "low", (double)low.x, (double)low.y, (double)low.z, "high", (double)high.x, (double)high.y,
-                     (double)high.z, "attributes", attributes);
+                     (double)high.z, "attributes", attributes, "hash", mesh->hash);
     ty_mesh_destroy(mesh);
     return TY_OK;
 }
@@ -183,11 +198,16 @@ static ty_status read_info(const char* path, bool recipe, json_t** out, ty_error
         }
         return info_image(path, out, error); // tiled, multi-part, DWA
     }
+    if (is_one_of(extension, meshes))
+    {
+        return info_mesh(path, recipe, out, error);
+    }
     if (recipe)
     {
-        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "only pictures (.exr) and aggregates (.glb) hold one");
+        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0,
+                               "only pictures (.exr), aggregates (.glb) and meshes (.ply) hold one");
     }
-    return is_one_of(extension, meshes) ? info_mesh(path, out, error) : info_image(path, out, error);
+    return info_image(path, out, error);
 }
 
 // "key: value" lines, nested keys indented.

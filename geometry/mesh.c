@@ -40,6 +40,8 @@ void ty_mesh_destroy(ty_mesh* mesh)
     ty_free(mesh->curvature_1);
     ty_free(mesh->curvature_2);
     ty_free(mesh->direction_1);
+    ty_free(mesh->recipe);
+    ty_free(mesh->hash);
     ty_free(mesh);
 }
 
@@ -66,6 +68,8 @@ ty_mesh* ty_mesh_copy(const ty_mesh* mesh)
     copy->curvature_1 = copy_array(mesh->curvature_1, n, sizeof(float));
     copy->curvature_2 = copy_array(mesh->curvature_2, n, sizeof(float));
     copy->direction_1 = copy_array(mesh->direction_1, n, sizeof(ty_vec3));
+    copy->recipe = mesh->recipe ? ty_string_copy(mesh->recipe) : NULL;
+    copy->hash = mesh->hash ? ty_string_copy(mesh->hash) : NULL;
     copy->attributes = copy_array(mesh->attributes, (size_t)mesh->attribute_count, sizeof(ty_mesh_attribute));
     for (int i = 0; i < copy->attribute_count; i++)
     {

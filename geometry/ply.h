@@ -56,6 +56,7 @@ typedef struct ply_file
     int line;               // of offset, ascii and header
     ply_format format;      // of what is being read: the header is text
     ply_format data_format; // of what follows it
+    size_t header_size;
     ply_element elements[PLY_MAX_ELEMENTS];
     int element_count;
     ty_error* error;
@@ -69,6 +70,10 @@ ty_status ply_fail(ply_file* file, const char* format, ...) TY_PRINTF(2, 3);
 TY_CHECKED ty_status ply_check_room(ply_file* file, const ply_element* element);
 TY_CHECKED ty_status ply_read_value(ply_file* file, ply_type type, double* out);
 TY_CHECKED ty_status ply_skip_element(ply_file* file, const ply_element* element);
+// Texts that our own files carry in comments. Writing needs room for ply_note_bound bytes; text NULL writes nothing.
+size_t ply_note_bound(const char* text);
+char* ply_note_write(const char* key, const char* text, char* out);  // returns the end of what was written
+char* ply_note_read(const ply_file* file, const char* key);          // caller frees; NULL = none, or no memory
 int ply_find_property(const ply_element* element, const char* name); // -1 = none
 
 typedef struct ply_points

@@ -165,6 +165,7 @@ ty_status ply_open(ply_file* file, const char* name, const void* bytes, size_t s
         {
             file->format = file->data_format;
             file->line++; // reading goes on in the next one
+            file->header_size = file->offset;
             return TY_OK;
         }
         ty_status status = parse_line(file, text);

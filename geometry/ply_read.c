@@ -361,6 +361,12 @@ ty_status ty_ply_read_memory(const char* name, const void* bytes, size_t size, t
         ty_mesh_compute_normals(mesh, crease);
     }
     ty_mesh_compute_bounds(mesh);
+    mesh->recipe = ply_note_read(&file, "recipe");
+    mesh->hash = ply_note_read(&file, "hash");
+    if (mesh->hash)
+    {
+        mesh->hash[strcspn(mesh->hash, "\n")] = 0;
+    }
     *out = mesh;
     return TY_OK;
 }

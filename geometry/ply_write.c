@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Binary little-endian PLY.
+#include "ply.h"
 #include <stdio.h>
 #include <string.h>
 #include <tsuya/base/file.h>
@@ -39,6 +40,13 @@ static void put_text(writer* out, const char* text)
     put(out, text, strlen(text));
 }
 
+static void put_note(writer* out, const char* key, const char* text)
+{
+    char* begin = (char*)out->bytes + out->size;
+    TY_ASSERT(out->size + ply_note_bound(text) <= out->capacity);
+    out->size += (size_t)(ply_note_write(key, text, begin) - begin);
+}
+
 // Colours as other programs write them: bytes where they are encoded, linear floats else.
 static bool is_color(const ty_mesh_attribute* attribute)
 {
@@ -66,7 +74,10 @@ static void put_property(writer* out, const char* name, int component, int compo
 static void put_header(writer* out, const ty_mesh* mesh)
 {
     char text[160];
-    snprintf(text, sizeof text, "ply\nformat binary_little_endian 1.0\nelement vertex %u\n", mesh->vertex_count);
+    put_text(out, "ply\nformat binary_little_endian 1.0\n");
+    put_note(out, "hash", mesh->hash);
+    put_note(out, "recipe", mesh->recipe);
+    snprintf(text, sizeof text, "element vertex %u\n", mesh->vertex_count);
     put_text(out, text);
     put_text(out, "property float x\nproperty float y\nproperty float z\n");
     put_text(out, "property float nx\nproperty float ny\nproperty float nz\n");
@@ -129,7 +140,7 @@ static void put_vertex(writer* out, const ty_mesh* mesh, uint32_t v)
 
 static size_t size_bound(const ty_mesh* mesh)
 {
-    size_t floats = 10, header = 1024;
+    size_t floats = 10, header = 1024 + ply_note_bound(mesh->recipe) + ply_note_bound(mesh->hash);
     for (int i = 0; i < mesh->attribute_count; i++)
     {
         floats += (size_t)mesh->attributes[i].components;

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <tsuya/base/log.h>
+#include <tsuya/geometry/mesh_file.h>
 #include <unistd.h>
 
 ty_status ty_scene_cache_folder(const char* given, char* out, ty_error* error)
@@ -24,90 +25,182 @@ ty_status ty_scene_cache_folder(const char* given, char* out, ty_error* error)
     return ty_folder_create(out, error);
 }
 
-// A file that is there but cannot be read as what it should be is made anew.
-static bool read_cached(const char* path, const char* key, const char* name, ty_aggregate** out)
-{
-    ty_error error;
-    if (!ty_file_exists(path))
-        return false;
-    if (ty_aggregate_read(path, NULL, out, &error) == TY_OK)
-    {
-        if ((*out)->hash && strcmp((*out)->hash, key) == 0)
-            return true;
-        ty_aggregate_destroy(*out);
-        *out = NULL;
-        (void)ty_error_set(&error, TY_BAD_FILE, "it holds another asset");
-    }
-    ty_log(TY_LOG_WARNING, "asset '%s': the cached file is damaged and is made again: %s", name, error.text);
-    return false;
-}
+#define FRAME_NAME "frame.####.exr"
 
-static ty_status make(const ty_recipe* recipe, const char* name, const char* key, const char* path, ty_workers* workers,
-                      ty_error* error)
+typedef struct entry
 {
-    ty_aggregate* made = NULL;
-    ty_status status = ty_recipe_run(recipe, key, workers, &made, error);
-    if (status == TY_NOT_AT_REST && made)
+    char path[TY_PATH_MAX];    // the file, or the folder of frames
+    char pattern[TY_PATH_MAX]; // of frames
+    char passing[64];          // folder that goes when the scene has been read; "" = kept
+    char key[33];
+} entry;
+
+// Every frame is there, and the first is of this recipe.
+static ty_status read_frames(const ty_asset* asset, const entry* e, char hash[33], ty_error* error)
+{
+    char path[TY_PATH_MAX];
+    int count = asset->recipe.generator->frame_count(asset->recipe.def);
+    for (int frame = 1; frame <= count; ++frame)
     {
-        ty_log(TY_LOG_WARNING, "asset '%s' did not come to rest: %s", name, error->text);
-        status = TY_OK;
+        ty_path_frame(e->pattern, frame, path);
+        if (!ty_file_exists(path))
+            return ty_error_set(error, TY_BAD_FILE, "there is no '%s'", path);
     }
-    if (status == TY_OK)
-        status = ty_aggregate_write(path, made, error);
-    ty_aggregate_destroy(made);
+    ty_exr* exr = NULL;
+    ty_path_frame(e->pattern, 1, path);
+    ty_status status = ty_exr_read(path, &exr, error);
+    const ty_exr_attribute* attribute = exr ? ty_exr_find_attribute(exr, "tsuya/hash") : NULL;
+    if (attribute && attribute->text)
+        snprintf(hash, 33, "%s", attribute->text);
+    ty_exr_destroy(exr);
     return status;
 }
 
-// Where the file of an asset goes. A cache that cannot be written costs time, not the picture: then the file lives in a
-// folder of its own, removed after it was read.
-static ty_status asset_path(const ty_scene_options* options, const char* key, char path[TY_PATH_MAX], char passing[64],
-                            ty_error* error)
+static void forget(ty_asset* asset)
 {
-    char folder[TY_PATH_MAX], file[64];
-    ty_error reason = {0}; // of a warning: not the caller's
-    passing[0] = 0;
-    if (ty_scene_cache_folder(options->cache_folder, folder, &reason) != TY_OK || access(folder, W_OK) != 0)
+    ty_aggregate_destroy(asset->aggregate);
+    ty_mesh_destroy(asset->mesh);
+    asset->aggregate = NULL;
+    asset->mesh = NULL;
+}
+
+static ty_status read_made(ty_asset* asset, const entry* e, ty_error* error)
+{
+    char hash[33] = "";
+    const char* claim = hash;
+    ty_status status;
+    switch (asset->recipe.generator->product)
     {
-        snprintf(passing, 64, "/tmp/tsuya-XXXXXX");
-        if (!mkdtemp(passing))
-            return ty_error_set(error, TY_BAD_FILE, "neither the folder of made assets nor /tmp can be written");
-        ty_log(TY_LOG_WARNING, "made assets cannot be kept (%s)", reason.text[0] ? reason.text : "read-only folder");
-        snprintf(folder, sizeof(folder), "%s", passing);
+    case TY_PRODUCT_AGGREGATE:
+        status = ty_aggregate_read(e->path, NULL, &asset->aggregate, error);
+        claim = status == TY_OK ? asset->aggregate->hash : NULL;
+        break;
+    case TY_PRODUCT_MESH:
+        status = ty_mesh_read(e->path, &asset->mesh, error);
+        claim = status == TY_OK ? asset->mesh->hash : NULL;
+        break;
+    default:
+        status = read_frames(asset, e, hash, error);
+        break;
     }
-    snprintf(file, sizeof(file), "%s.glb", key);
-    ty_path_join(folder, file, path);
+    if (status != TY_OK || (claim && strcmp(claim, e->key) == 0))
+        return status;
+    forget(asset);
+    return ty_error_set(error, TY_BAD_FILE, "it holds another asset");
+}
+
+// What is there but cannot be read as what it should be is made anew.
+static bool read_cached(ty_asset* asset, const entry* e)
+{
+    ty_error error;
+    if (!ty_file_exists(e->path) && !ty_folder_exists(e->path))
+        return false;
+    if (read_made(asset, e, &error) == TY_OK)
+        return true;
+    ty_log(TY_LOG_WARNING, "asset '%s': what was kept is damaged and is made again: %s", asset->name, error.text);
+    return false;
+}
+
+static ty_status make_frames(const ty_asset* asset, const entry* e, ty_workers* workers, ty_error* error)
+{
+    ty_atomic_folder folder;
+    char pattern[TY_PATH_MAX];
+    ty_status status = ty_atomic_folder_begin(&folder, e->path, error);
+    if (status != TY_OK)
+        return status;
+    ty_path_join(folder.temporary, FRAME_NAME, pattern);
+    status = ty_recipe_write(&asset->recipe, e->key, pattern, workers, error);
+    if (status == TY_OK)
+        return ty_atomic_folder_commit(&folder, error);
+    ty_atomic_folder_abort(&folder);
+    return status;
+}
+
+static ty_status make(const ty_asset* asset, const entry* e, ty_workers* workers, ty_error* error)
+{
+    if (asset->recipe.generator->product == TY_PRODUCT_FRAMES)
+        return make_frames(asset, e, workers, error);
+    ty_status status = ty_recipe_write(&asset->recipe, e->key, e->path, workers, error);
+    if (status != TY_NOT_AT_REST)
+        return status;
+    ty_log(TY_LOG_WARNING, "asset '%s' did not come to rest: %s", asset->name, error->text);
     return TY_OK;
 }
 
-ty_status ty_asset_cache_get(ty_loader* loader, const char* name, const ty_recipe* recipe, ty_aggregate** out,
-                             ty_error* error)
+// Where an asset goes. A cache that cannot be written costs time, not the picture: then it lives in a folder of its
+// own.
+static ty_status entry_place(const ty_scene_options* options, ty_product product, entry* e, ty_error* error)
 {
-    char path[TY_PATH_MAX], passing[64], key[33];
+    static const char* const extensions[] = {"glb", "ply", "frames"};
+    char folder[TY_PATH_MAX], file[64];
+    ty_error reason = {0}; // of a warning: not the caller's
+    if (ty_scene_cache_folder(options->cache_folder, folder, &reason) != TY_OK || access(folder, W_OK) != 0)
+    {
+        snprintf(e->passing, sizeof(e->passing), "/tmp/tsuya-XXXXXX");
+        if (!mkdtemp(e->passing))
+            return ty_error_set(error, TY_BAD_FILE, "neither the folder of made assets nor /tmp can be written");
+        ty_log(TY_LOG_WARNING, "made assets cannot be kept (%s)", reason.text[0] ? reason.text : "read-only folder");
+        snprintf(folder, sizeof(folder), "%s", e->passing);
+    }
+    snprintf(file, sizeof(file), "%s.%s", e->key, extensions[product]);
+    ty_path_join(folder, file, e->path);
+    ty_path_join(e->path, FRAME_NAME, e->pattern);
+    return TY_OK;
+}
+
+// Files have been read; frames are read while the scene lives.
+static void pass(ty_loader* loader, const ty_asset* asset, const entry* e, ty_status status)
+{
+    struct ty_scene_resources* resources = loader->scene->resources;
+    if (!e->passing[0])
+        return;
+    if (status == TY_OK && asset->recipe.generator->product == TY_PRODUCT_FRAMES)
+    {
+        resources->passing[resources->passing_count++] = ty_arena_string(loader->arena, e->path);
+        return;
+    }
+    unlink(e->path);
+    rmdir(e->passing);
+}
+
+static void log_asset(const ty_asset* asset, const entry* e, bool made, double start)
+{
+    char what[64];
+    const ty_generator* generator = asset->recipe.generator;
+    if (generator->product == TY_PRODUCT_AGGREGATE)
+        snprintf(what, sizeof(what), "%u instances", asset->aggregate->instance_count);
+    else if (generator->product == TY_PRODUCT_MESH)
+        snprintf(what, sizeof(what), "%u triangles", asset->mesh->triangle_count);
+    else
+        snprintf(what, sizeof(what), "%d frames", generator->frame_count(asset->recipe.def));
+    if (made)
+        ty_log(TY_LOG_INFO, "asset '%s': %s made, %.1f s (%s%s)", asset->name, what, ty_time_now() - start,
+               e->passing[0] ? "not kept" : "kept as ", e->passing[0] ? "" : e->path);
+    else
+        ty_log(TY_LOG_INFO, "asset '%s': %s from the cache, %.1f s", asset->name, what, ty_time_now() - start);
+}
+
+ty_status ty_asset_cache_get(ty_loader* loader, ty_asset* asset, ty_error* error)
+{
+    entry e = {.passing = ""};
     double start = ty_time_now();
-    ty_status status = ty_recipe_key(recipe, &loader->files, key, error);
+    ty_status status = ty_recipe_key(&asset->recipe, &loader->files, e.key, error);
     if (status == TY_OK)
-        status = asset_path(loader->options, key, path, passing, error);
+        status = entry_place(loader->options, asset->recipe.generator->product, &e, error);
     if (status != TY_OK)
         return status;
-    if (read_cached(path, key, name, out))
+    bool cached = read_cached(asset, &e);
+    if (!cached)
     {
-        ++loader->scene->assets_cached;
-        ty_log(TY_LOG_INFO, "asset '%s': %u instances from the cache, %.1f s", name, (*out)->instance_count,
-               ty_time_now() - start);
-        return TY_OK;
-    }
-    status = make(recipe, name, key, path, loader->options->workers, error);
-    if (status == TY_OK)
-        status = ty_aggregate_read(path, NULL, out, error);
-    if (passing[0])
-    {
-        unlink(path);
-        rmdir(passing);
+        status = make(asset, &e, loader->options->workers, error);
+        if (status == TY_OK)
+            status = read_made(asset, &e, error);
+        pass(loader, asset, &e, status);
     }
     if (status != TY_OK)
         return status;
-    ++loader->scene->assets_made;
-    ty_log(TY_LOG_INFO, "asset '%s': %u instances made, %.1f s (%s%s)", name, (*out)->instance_count,
-           ty_time_now() - start, passing[0] ? "not kept" : "kept as ", passing[0] ? "" : path);
+    asset->frames = ty_arena_string(loader->arena, e.pattern);
+    *(cached ? &loader->scene->assets_cached : &loader->scene->assets_made) += 1;
+    log_asset(asset, &e, !cached, start);
     return TY_OK;
 }

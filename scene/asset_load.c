@@ -115,8 +115,13 @@ static void load_recipe(ty_loader* loader, ty_asset* asset)
     ty_error error;
     if (loader->options->check_only)
         return;
-    if (ty_asset_cache_get(loader, asset->name, &asset->recipe, &asset->aggregate, &error) == TY_OK)
-        keep_aggregate(loader, asset->aggregate);
+    if (ty_asset_cache_get(loader, asset, &error) == TY_OK)
+    {
+        if (asset->aggregate)
+            keep_aggregate(loader, asset->aggregate);
+        if (asset->mesh)
+            keep_mesh(loader, asset->mesh);
+    }
     else if (error.status == TY_INTERRUPTED || error.status == TY_TERMINATED)
         ty_error_list_add(loader->errors, &error);
     else
@@ -163,6 +168,7 @@ void ty_load_assets(ty_loader* loader)
     struct ty_scene_resources* resources = loader->scene->resources;
     resources->meshes = TY_ARENA_ALLOC(loader->arena, ty_mesh*, loader->asset_count);
     resources->aggregates = TY_ARENA_ALLOC(loader->arena, ty_aggregate*, loader->asset_count);
+    resources->passing = TY_ARENA_ALLOC(loader->arena, const char*, loader->asset_count);
     int before = loader->errors->count;
     load_meshes(loader);
     if (loader->options->check_only && loader->scene->color)

@@ -106,11 +106,10 @@ static void inline_recipes(ty_loader* loader)
     ty_node* assets = ty_section(loader, "assets", TY_NODE_MAP);
     for (int i = 0; assets && i < assets->count; ++i)
     {
-        int index = ty_node_find(assets->items[i], "aggregate");
-        if (index >= 0 && ty_recipe_is_file(assets->items[i]->items[index]))
-            ty_recipe_inline(loader, &assets->items[i]->items[index]);
-        if (loader->tree.stopped)
-            return;
+        ty_node* asset = assets->items[i];
+        for (int k = 0; asset->kind == TY_NODE_MAP && k < asset->count && !loader->tree.stopped; ++k)
+            if (ty_recipe_is_place(asset->keys[k].text) && ty_recipe_is_file(asset->items[k]))
+                ty_recipe_inline(loader, &asset->items[k]);
     }
 }
 

@@ -41,6 +41,7 @@ typedef struct ty_asset
     bool used;
     ty_mesh* mesh;           // once loaded
     ty_aggregate* aggregate; // once loaded
+    const char* frames;      // RECIPE of frames: the pattern, once made
 } ty_asset;
 
 typedef struct ty_attribute_use
@@ -70,6 +71,8 @@ struct ty_scene_resources
     ty_mesh** meshes;
     ty_aggregate** aggregates;
     int mesh_count, aggregate_count;
+    const char** passing; // folders of frames that could not be kept, removed at the end
+    int passing_count;
     uint32_t depth_field_count;
 };
 
@@ -120,18 +123,21 @@ void ty_override_check_defines(ty_loader* loader);
 const char* ty_override_text(ty_arena* arena, const ty_scene_options* options); // as given, in one line
 
 // recipe.c
-bool ty_recipe_is_file(const ty_node* node);              // a scalar that names .yaml, .yml or .json
-void ty_recipe_inline(ty_loader* loader, ty_node** slot); // the file's mapping in place of its name
-bool ty_recipe_read(ty_loader* loader, ty_node* node, ty_recipe* recipe);
+bool ty_recipe_is_file(const ty_node* node);                // a scalar that names .yaml, .yml or .json
+void ty_recipe_inline(ty_loader* loader, ty_node** slot);   // the file's mapping in place of its name
+bool ty_recipe_is_place(const char* key);                   // aggregate, mesh, frames
+const char* ty_recipe_place(const ty_generator* generator); // the one for what it makes
+// place: the key it stands at, to be one that such an asset belongs to, or NULL. False after a report.
+bool ty_recipe_read(ty_loader* loader, ty_node* node, const char* place, ty_recipe* recipe);
 char* ty_recipe_text(const ty_recipe* recipe); // a complete recipe file; caller frees
-// Runs the generator and gives the result its recipe and hash.
-TY_CHECKED ty_status ty_recipe_run(const ty_recipe* recipe, const char* key, ty_workers* workers, ty_aggregate** out,
-                                   ty_error* error);
+// Runs the generator and writes what it makes, with its recipe and hash: a .glb, a .ply, or frames by a pattern.
+// TY_NOT_AT_REST when that is complete but not at rest.
+TY_CHECKED ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* output, ty_workers* workers,
+                                     ty_error* error);
 TY_CHECKED ty_status ty_recipe_key(const ty_recipe* recipe, const ty_files* files, char key[33], ty_error* error);
 
-// asset_cache.c: the aggregate of a recipe, made at most once per cache folder.
-TY_CHECKED ty_status ty_asset_cache_get(ty_loader* loader, const char* name, const ty_recipe* recipe,
-                                        ty_aggregate** out, ty_error* error);
+// asset_cache.c: what a recipe makes, made at most once per cache folder, into the asset's aggregate, mesh or frames.
+TY_CHECKED ty_status ty_asset_cache_get(ty_loader* loader, ty_asset* asset, ty_error* error);
 
 // scene_assets.c, scene_materials.c, scene_lights.c, scene_objects.c: sections of the file to definitions
 void ty_read_assets(ty_loader* loader);

@@ -41,8 +41,8 @@ static const ty_param object_rows[] = {
 };
 
 static const ty_param mesh_rows[] = {
-    {"mesh", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_mesh_asset_def, mesh), ".ply .obj .stl .fbx .dae .off",
-     true},
+    {"mesh", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_mesh_asset_def, mesh),
+     "a recipe (file or in place), or .ply .obj .stl .fbx .dae .off", true},
 };
 
 static const char* const wraps[] = {"repeat", "clamp", "mirror", NULL};

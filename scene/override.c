@@ -136,10 +136,10 @@ static ty_node** step_into_list(ty_override* o, ty_node* list, int step)
     return NULL;
 }
 
-// Whether the third step is the `aggregate` of an asset.
+// Whether the third step is where an asset has its recipe.
 static bool is_recipe_step(const ty_override* o)
 {
-    return !o->loader->is_recipe && strcmp(o->steps[0], "assets") == 0 && strcmp(o->steps[2], "aggregate") == 0;
+    return !o->loader->is_recipe && strcmp(o->steps[0], "assets") == 0 && ty_recipe_is_place(o->steps[2]);
 }
 
 static void set_value(ty_override* o)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // JSON Schema (draft 2020-12) of scene files, for editors, from the tables.
+#include "loader.h"
 #include "number.h"
 #include "scene_params.h"
 #include <string.h>
@@ -152,16 +153,22 @@ static void add_row(ty_text* out, const ty_param* row, const char* further)
 }
 
 // What the readers accept beyond a row's own type.
-static const char* further_type(const ty_param_table* table, const ty_param* row, const char* recipes)
+static void add_further_type(ty_text* out, const ty_param_table* table, const ty_param* row)
 {
+    int count = 0;
+    const ty_generator* const* generators = ty_generator_list(&count);
+    ty_text_add(out, "");
     if (table == ty_object_params() && strcmp(row->name, "scale") == 0)
-        return ", {\"type\": \"number\"}";
-    return table == ty_aggregate_asset_params() && strcmp(row->name, "aggregate") == 0 ? recipes : "";
+        ty_text_add(out, ", {\"type\": \"number\"}");
+    if (strncmp(table->name, "asset.", 6) != 0 || row->type != TY_PARAM_PATH)
+        return;
+    for (int i = 0; i < count; ++i)
+        if (strcmp(ty_recipe_place(generators[i]), row->name) == 0)
+            ty_text_format(out, ", {\"$ref\": \"#/$defs/%s\"}", generators[i]->params->name);
 }
 
 // extra: a key that tells this table from its neighbours, with its fixed value; NULL = none.
-static void add_table(ty_text* out, const ty_param_table* table, const char* extra, const char* value,
-                      const char* recipes)
+static void add_table(ty_text* out, const ty_param_table* table, const char* extra, const char* value)
 {
     ty_text required = {0};
     ty_text_add(out, "    ");
@@ -177,7 +184,10 @@ static void add_table(ty_text* out, const ty_param_table* table, const char* ext
     for (int i = 0; i < table->count; ++i)
     {
         const ty_param* row = &table->params[i];
-        add_row(out, row, further_type(table, row, recipes));
+        ty_text further = {0};
+        add_further_type(&further, table, row);
+        add_row(out, row, further.data);
+        ty_text_term(&further);
         ty_text_add(out, i + 1 < table->count ? ",\n" : "\n");
         if (row->required)
             ty_text_format(&required, "%s\"%s\"", required.size ? ", " : "", row->name);
@@ -198,26 +208,20 @@ static const char* generator_kind(const ty_param_table* table)
 
 static void add_definitions(ty_text* out)
 {
-    int count = 0, generators = 0;
+    int count = 0;
     const ty_param_table* const* tables = ty_scene_tables(&count);
-    const ty_generator* const* all = ty_generator_list(&generators);
-    ty_text recipes = {0};
-    ty_text_add(&recipes, "");
-    for (int i = 0; i < generators; ++i)
-        ty_text_format(&recipes, ", {\"$ref\": \"#/$defs/%s\"}", all[i]->params->name);
     ty_text_add(out, "    \"variable\": {\"type\": \"string\", \"pattern\": \"^[$][^$]\"},\n");
     for (int i = 0; i < count; ++i)
     {
         const char* kind = generator_kind(tables[i]);
         if (tables[i] == ty_surface_params())
-            add_table(out, tables[i], "model", "surface", recipes.data);
+            add_table(out, tables[i], "model", "surface");
         else if (tables[i] == ty_cdrf_params())
-            add_table(out, tables[i], "model", "cdrf", recipes.data);
+            add_table(out, tables[i], "model", "cdrf");
         else
-            add_table(out, tables[i], kind ? "kind" : NULL, kind, recipes.data);
+            add_table(out, tables[i], kind ? "kind" : NULL, kind);
         ty_text_add(out, i + 1 < count ? ",\n" : "\n");
     }
-    ty_text_term(&recipes);
 }
 
 char* ty_params_schema(void)

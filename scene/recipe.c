@@ -6,6 +6,23 @@
 #include <stdio.h>
 #include <string.h>
 #include <tsuya/base/log.h>
+#include <tsuya/geometry/mesh_file.h>
+
+// Where a recipe may stand in an asset, by what it makes.
+static const char* const places[] = {"aggregate", "mesh", "frames"};
+
+bool ty_recipe_is_place(const char* key)
+{
+    for (int i = 0; i < 3; ++i)
+        if (strcmp(places[i], key) == 0)
+            return true;
+    return false;
+}
+
+const char* ty_recipe_place(const ty_generator* generator)
+{
+    return places[generator->product];
+}
 
 bool ty_recipe_is_file(const ty_node* node)
 {
@@ -26,7 +43,7 @@ void ty_recipe_inline(ty_loader* loader, ty_node** slot)
 {
     ty_node* name = *slot;
     ty_place place = name->place;
-    const char* path = ty_files_find(&loader->files, name, "aggregate");
+    const char* path = ty_files_find(&loader->files, name, "recipe");
     name->bad |= path == NULL;
     if (!path)
         return;
@@ -72,7 +89,8 @@ static const ty_generator* find_generator(ty_loader* loader, const ty_node* node
     return generator;
 }
 
-bool ty_recipe_read(ty_loader* loader, ty_node* node, ty_recipe* recipe)
+// Every table of a recipe, with its files noted; false after a report.
+static bool read_recipe(ty_loader* loader, ty_node* node, ty_recipe* recipe)
 {
     static const char* const skip[] = {"kind", NULL};
     char described[80];
@@ -91,6 +109,18 @@ bool ty_recipe_read(ty_loader* loader, ty_node* node, ty_recipe* recipe)
     bool good = ty_params_read(&loader->reader, node, recipe->generator->params, recipe->def, skip);
     recipe->files_end = loader->files.count;
     return good;
+}
+
+bool ty_recipe_read(ty_loader* loader, ty_node* node, const char* place, ty_recipe* recipe)
+{
+    if (!read_recipe(loader, node, recipe))
+        return false;
+    const char* product = ty_recipe_place(recipe->generator);
+    if (!place || strcmp(product, place) == 0)
+        return true;
+    ty_report(loader->errors, ty_node_get(node, "kind")->place, TY_BAD_INPUT,
+              "'%s': a recipe of kind '%s' makes what is named by '%s'", place, recipe->generator->kind, product);
+    return false;
 }
 
 char* ty_recipe_text(const ty_recipe* recipe)
@@ -114,17 +144,54 @@ ty_status ty_recipe_key(const ty_recipe* recipe, const ty_files* files, char key
     return status;
 }
 
-ty_status ty_recipe_run(const ty_recipe* recipe, const char* key, ty_workers* workers, ty_aggregate** out,
-                        ty_error* error)
+typedef struct frame_writer
 {
-    ty_status status = recipe->generator->make(recipe->def, workers, out, error);
-    if (!*out)
+    const char *pattern, *text, *key;
+} frame_writer;
+
+static ty_status write_frame(void* context, int frame, ty_exr* image, ty_error* error)
+{
+    const frame_writer* writer = context;
+    char path[TY_PATH_MAX];
+    ty_exr_add_string(image, "tsuya/recipe", writer->text);
+    ty_exr_add_string(image, "tsuya/hash", writer->key);
+    ty_path_frame(writer->pattern, frame, path);
+    return ty_exr_write(path, image, error);
+}
+
+static void sign(char** recipe, char** hash, char* text, const char* key)
+{
+    ty_free(*recipe);
+    ty_free(*hash);
+    *recipe = text;
+    *hash = ty_string_copy(key);
+}
+
+ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* output, ty_workers* workers,
+                          ty_error* error)
+{
+    char* text = ty_recipe_text(recipe);
+    frame_writer writer = {output, text, key};
+    ty_made made = {.frames = {write_frame, &writer}};
+    ty_status status = recipe->generator->make(recipe->def, workers, &made, error), written = TY_OK;
+    ty_error write_error = {0};
+    if (made.aggregate)
+    {
+        sign(&made.aggregate->recipe, &made.aggregate->hash, ty_string_copy(text), key);
+        written = ty_aggregate_write(output, made.aggregate, &write_error);
+    }
+    if (made.mesh)
+    {
+        sign(&made.mesh->recipe, &made.mesh->hash, ty_string_copy(text), key);
+        written = ty_ply_write(output, made.mesh, &write_error);
+    }
+    ty_aggregate_destroy(made.aggregate);
+    ty_mesh_destroy(made.mesh);
+    ty_free(text);
+    if (written == TY_OK)
         return status;
-    ty_free((*out)->recipe);
-    ty_free((*out)->hash);
-    (*out)->recipe = ty_recipe_text(recipe);
-    (*out)->hash = ty_string_copy(key);
-    return status;
+    *error = write_error;
+    return written;
 }
 
 // The recipe file as the root of a loader, read; false after reports.
@@ -133,33 +200,28 @@ static bool read_root(ty_loader* loader, const char* path, ty_recipe* recipe)
     int first = loader->errors->count;
     loader->is_recipe = true;
     loader->root = ty_document_load(&loader->tree, &loader->files, path, "", NULL);
-    return loader->root && ty_loader_resolve(loader) && ty_recipe_read(loader, loader->root, recipe) &&
+    return loader->root && ty_loader_resolve(loader) && read_recipe(loader, loader->root, recipe) &&
            loader->errors->count == first;
 }
 
 static ty_status make_and_write(ty_loader* loader, const ty_recipe* recipe, const char* output, ty_error* error)
 {
     char key[33];
-    ty_aggregate* aggregate = NULL;
     ty_status status = ty_recipe_key(recipe, &loader->files, key, error);
-    if (status != TY_OK)
-        return status;
-    status = ty_recipe_run(recipe, key, loader->options->workers, &aggregate, error);
-    if (aggregate)
-    {
-        ty_error write_error;
-        ty_status written = ty_aggregate_write(output, aggregate, &write_error);
-        if (written != TY_OK)
-        {
-            *error = write_error;
-            status = written;
-        }
-    }
-    ty_aggregate_destroy(aggregate);
-    return status;
+    return status == TY_OK ? ty_recipe_write(recipe, key, output, loader->options->workers, error) : status;
 }
 
-ty_status ty_recipe_make(const char* path, const char* output, const ty_scene_options* options, ty_error_list* errors)
+static bool is_kind(ty_loader* loader, const ty_recipe* recipe, const char* kind)
+{
+    if (!kind || strcmp(recipe->generator->kind, kind) == 0)
+        return true;
+    ty_report(loader->errors, ty_node_get(recipe->node, "kind")->place, TY_BAD_INPUT,
+              "expected a recipe of kind '%s', got '%s'", kind, recipe->generator->kind);
+    return false;
+}
+
+ty_status ty_recipe_make(const char* path, const char* kind, const char* output, const ty_scene_options* options,
+                         ty_error_list* errors)
 {
     char folder[TY_PATH_MAX];
     ty_path_folder(path, folder);
@@ -167,7 +229,7 @@ ty_status ty_recipe_make(const char* path, const char* output, const ty_scene_op
     ty_loader* loader = ty_loader_create(folder, options, errors);
     ty_recipe recipe = {0};
     ty_status status = TY_OK;
-    if (!read_root(loader, path, &recipe))
+    if (!read_root(loader, path, &recipe) || !is_kind(loader, &recipe, kind))
         status = ty_loader_status(errors, first);
     else if (!options->check_only)
     {

@@ -2,6 +2,7 @@
 // The section `assets`: what each name stands for, before anything is read or made.
 #include "loader.h"
 #include "nearest.h"
+#include <stdio.h>
 #include <string.h>
 
 static const char* const kinds[] = {"mesh", "shape", "texture", "aggregate", NULL};
@@ -23,8 +24,24 @@ int ty_texture_index(ty_loader* loader, const ty_texture_def* def, ty_place plac
     return scene->texture_count++;
 }
 
+// A recipe in place of a file's name.
+static void read_recipe(ty_loader* loader, ty_node* node, const char* key, ty_asset* asset)
+{
+    const char* const skip[] = {key, NULL};
+    char of[64];
+    snprintf(of, sizeof(of), "asset.%s with a recipe", key);
+    if (ty_params_check_keys(&loader->reader, node, skip, of) &&
+        ty_recipe_read(loader, ty_node_get(node, key), key, &asset->recipe))
+        asset->kind = TY_ASSET_RECIPE;
+}
+
 static void read_mesh(ty_loader* loader, ty_node* node, ty_asset* asset)
 {
+    if (ty_node_get(node, "mesh")->kind == TY_NODE_MAP)
+    {
+        read_recipe(loader, node, "mesh", asset);
+        return;
+    }
     ty_mesh_asset_def def;
     if (!ty_params_read(&loader->reader, node, ty_mesh_asset_params(), &def, NULL))
         return;
@@ -48,7 +65,6 @@ static void read_shape(ty_loader* loader, ty_node* node, ty_asset* asset)
 
 static void read_aggregate(ty_loader* loader, ty_node* node, ty_asset* asset)
 {
-    static const char* const skip[] = {"aggregate", NULL};
     ty_node* value = ty_node_get(node, "aggregate");
     ty_node* prototype = ty_node_get(node, "prototype");
     if (value->kind == TY_NODE_SCALAR)
@@ -65,10 +81,7 @@ static void read_aggregate(ty_loader* loader, ty_node* node, ty_asset* asset)
                                 : "'prototype' belongs to .ply points; a .glb brings its own");
         return;
     }
-    if (!ty_params_check_keys(&loader->reader, node, skip, "asset.aggregate with a recipe"))
-        return;
-    if (ty_recipe_read(loader, value, &asset->recipe))
-        asset->kind = TY_ASSET_RECIPE;
+    read_recipe(loader, node, "aggregate", asset);
 }
 
 static void read_asset(ty_loader* loader, ty_node* node, ty_asset* asset)

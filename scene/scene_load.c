@@ -156,6 +156,13 @@ void ty_scene_destroy(ty_scene* scene)
         ty_mesh_destroy(scene->resources->meshes[i]);
     for (int i = 0; i < scene->resources->aggregate_count; ++i)
         ty_aggregate_destroy(scene->resources->aggregates[i]);
+    for (int i = 0; i < scene->resources->passing_count; ++i)
+    {
+        char parent[TY_PATH_MAX];
+        ty_folder_remove(scene->resources->passing[i]);
+        ty_path_folder(scene->resources->passing[i], parent);
+        ty_folder_remove(parent);
+    }
     ty_color_destroy(scene->color);
     ty_arena_destroy(scene->arena);
 }

@@ -20,12 +20,14 @@ static void spread_scale(ty_loader* loader, ty_node* node)
         node->items[index] = list;
 }
 
-static bool is_geometry(ty_asset_kind kind, bool wants_aggregate)
+static bool is_geometry(const ty_asset* asset, bool wants_aggregate)
 {
-    if (kind == TY_ASSET_NONE)
+    if (asset->kind == TY_ASSET_NONE)
         return true; // reported where it is defined
-    return wants_aggregate ? kind == TY_ASSET_AGGREGATE || kind == TY_ASSET_RECIPE
-                           : kind == TY_ASSET_MESH || kind == TY_ASSET_SHAPE;
+    if (asset->kind == TY_ASSET_RECIPE)
+        return asset->recipe.generator->product == (wants_aggregate ? TY_PRODUCT_AGGREGATE : TY_PRODUCT_MESH);
+    return wants_aggregate ? asset->kind == TY_ASSET_AGGREGATE
+                           : asset->kind == TY_ASSET_MESH || asset->kind == TY_ASSET_SHAPE;
 }
 
 static void find_asset(ty_loader* loader, const ty_node* node, ty_object_entry* entry)
@@ -45,7 +47,7 @@ static void find_asset(ty_loader* loader, const ty_node* node, ty_object_entry* 
     asset->used = true;
     if (asset->prototype >= 0)
         loader->assets[asset->prototype].used = true;
-    if (!is_geometry(asset->kind, aggregate != NULL))
+    if (!is_geometry(asset, aggregate != NULL))
         ty_report(loader->errors, name->place, TY_BAD_INPUT, "asset '%.200s' is no %s", asset->name,
                   mesh ? "mesh or shape" : "aggregate");
 }

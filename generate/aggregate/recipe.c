@@ -192,4 +192,15 @@ const ty_param_table* ty_aggregate_recipe_params(void)
     return &recipe_table;
 }
 
-const ty_generator ty_aggregate_generator = {"aggregate", "aggregate 2", &recipe_table, ty_aggregate_make};
+static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_error* error)
+{
+    return ty_aggregate_make(def, workers, &out->aggregate, error);
+}
+
+const ty_generator ty_aggregate_generator = {
+    .kind = "aggregate",
+    .build_id = "aggregate 2",
+    .product = TY_PRODUCT_AGGREGATE,
+    .params = &recipe_table,
+    .make = make,
+};

@@ -408,6 +408,48 @@ static void test_sequences(void** state)
     assert_frame(most, 100, ""); // does not fit: names nothing
 }
 
+static void put_in(const char* parent, const char* name, const char* text)
+{
+    char full[TY_PATH_MAX];
+    ty_error error;
+    ty_path_join(parent, name, full);
+    assert_int_equal(ty_file_write(full, text, strlen(text), &error), TY_OK);
+}
+
+static void test_folders_are_whole(void** state)
+{
+    (void)state;
+    ty_atomic_folder frames;
+    ty_error error;
+    char target[TY_PATH_MAX];
+    strcpy(target, at("frames"));
+    assert_int_equal(ty_atomic_folder_begin(&frames, target, &error), TY_OK);
+    put_in(frames.temporary, "1", "one");
+    assert_false(ty_folder_exists(target));
+    assert_int_equal(ty_atomic_folder_commit(&frames, &error), TY_OK);
+    assert_content("frames/1", "one");
+    ty_atomic_folder_abort(&frames); // harmless
+    assert_content("frames/1", "one");
+    // another takes its place, files and all
+    assert_int_equal(ty_atomic_folder_begin(&frames, target, &error), TY_OK);
+    put_in(frames.temporary, "2", "two");
+    assert_int_equal(ty_atomic_folder_commit(&frames, &error), TY_OK);
+    assert_content("frames/2", "two");
+    assert_int_equal(entries_of(target), 1);
+    // given up: what is there stays
+    assert_int_equal(ty_atomic_folder_begin(&frames, target, &error), TY_OK);
+    put_in(frames.temporary, "3", "three");
+    ty_atomic_folder_abort(&frames);
+    assert_int_equal(entries_of(target), 1);
+    assert_int_equal(entries_of(folder), 1);
+    write_plain("file", "text"); // is in the way
+    assert_int_equal(ty_atomic_folder_begin(&frames, at("file"), &error), TY_OK);
+    assert_int_equal(ty_atomic_folder_commit(&frames, &error), TY_BAD_FILE);
+    assert_content("file", "text");
+    assert_int_equal(entries_of(folder), 2);
+    assert_int_equal(ty_atomic_folder_begin(&frames, at("no/such"), &error), TY_BAD_FILE);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -426,6 +468,7 @@ int main(void)
         IN_FOLDER(test_longest_name),
         IN_FOLDER(test_failed_write_leaves_the_old),
         IN_FOLDER(test_folder_create),
+        IN_FOLDER(test_folders_are_whole),
         cmocka_unit_test(test_paths),
         cmocka_unit_test(test_sequences),
     };

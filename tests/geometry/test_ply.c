@@ -118,6 +118,12 @@ static void written_bytes_come_back(void** state)
     uint32_t count = mesh->vertex_count; // the sharp edge has split vertices
     mesh->uvs = TY_ALLOC(ty_vec2, count);
     mesh->uvs[3] = (ty_vec2){0.25f, 0.75f};
+    char line[1200]; // far more than a line of a header may have
+    memset(line, 'x', sizeof line);
+    line[sizeof line - 1] = 0;
+    assert_null(mesh->recipe);
+    mesh->hash = ty_string_copy("00ff");
+    mesh->recipe = ty_string_format("tsuya: 1\n\n  odd: ' end_header '\n%s\n", line);
     assert_int_equal(ty_ply_write("round.ply", mesh, &error), TY_OK);
     assert_int_equal(ty_mesh_read("round.ply", &again, &error), TY_OK);
     assert_memory_equal(mesh->positions, again->positions, count * sizeof(ty_vec3));
@@ -126,6 +132,8 @@ static void written_bytes_come_back(void** state)
     assert_memory_equal(mesh->triangles, again->triangles, 2 * sizeof mesh->triangles[0]);
     assert_memory_equal(ty_mesh_find_attribute(mesh, "weight")->values, ty_mesh_find_attribute(again, "weight")->values,
                         count * sizeof(float));
+    assert_string_equal(again->recipe, mesh->recipe);
+    assert_string_equal(again->hash, "00ff");
     assert_int_equal(ty_ply_write("round2.ply", again, &error), TY_OK);
     ty_bytes a, b;
     assert_int_equal(ty_file_read("round.ply", 1 << 20, &a, &error), TY_OK);

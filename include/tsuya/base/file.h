@@ -34,8 +34,23 @@ TY_CHECKED ty_status ty_atomic_commit(ty_atomic_file* file, ty_error* error);
 void ty_atomic_abort(ty_atomic_file* file); // removes the temporary; harmless after a commit or a failed begin
 void ty_atomic_abort_all(void);             // async-signal-safe; removes only what this process began
 
+// A folder that is complete or absent: write files into .temporary, then commit.
+typedef struct ty_atomic_folder
+{
+    char path[TY_PATH_MAX];
+    char temporary[TY_PATH_MAX]; // beside path; empty = nothing is pending
+} ty_atomic_folder;
+
+TY_CHECKED ty_status ty_atomic_folder_begin(ty_atomic_folder* folder, const char* path, ty_error* error);
+// Renames; a folder that stands there is replaced in one step and removed with the files in it.
+TY_CHECKED ty_status ty_atomic_folder_commit(ty_atomic_folder* folder, ty_error* error);
+void ty_atomic_folder_abort(ty_atomic_folder* folder); // removes the temporary; harmless after a commit
+
 TY_CHECKED ty_status ty_file_write(const char* path, const void* bytes, size_t size, ty_error* error); // atomic
 TY_CHECKED ty_status ty_folder_create(const char* path, ty_error* error); // with parents; existing is fine
+
+// Removes a folder and the files in it; folders in it are left, and it with them. Links are not followed.
+void ty_folder_remove(const char* path);
 
 bool ty_file_exists(const char* path); // a regular file
 bool ty_folder_exists(const char* path);

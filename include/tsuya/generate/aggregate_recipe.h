@@ -43,6 +43,6 @@ typedef struct ty_aggregate_recipe
 
 ty_aggregate_recipe ty_aggregate_recipe_default(void); // 2,000 grains of cooked japonica rice in the default bowl
 const ty_param_table* ty_aggregate_recipe_params(void);
-// def is a ty_aggregate_recipe; otherwise as ty_generator's make.
+// def is a ty_aggregate_recipe; on failure *out is NULL, else as ty_generator's make.
 TY_CHECKED ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate** out, ty_error* error);
 extern const ty_generator ty_aggregate_generator;

@@ -5,16 +5,42 @@
 #include <tsuya/base/status.h>
 #include <tsuya/base/workers.h>
 #include <tsuya/geometry/aggregate.h>
+#include <tsuya/image/exr.h>
+
+typedef enum ty_product
+{
+    TY_PRODUCT_AGGREGATE,
+    TY_PRODUCT_MESH,
+    TY_PRODUCT_FRAMES, // pictures 1..n of a loop
+} ty_product;
+
+// Takes the frames of a sequence as they are made, each once, in any order: numbers from 1. The image is the
+// generator's own; put may add attributes. A failure of put ends the making.
+typedef struct ty_frame_sink
+{
+    ty_status (*put)(void* context, int frame, ty_exr* image, ty_error* error);
+    void* context;
+} ty_frame_sink;
+
+// One of these, by product.
+typedef struct ty_made
+{
+    ty_aggregate* aggregate; // made; the caller's
+    ty_mesh* mesh;           // the same
+    ty_frame_sink frames;    // given by the caller
+} ty_made;
 
 // A kind of recipe. The def struct is described by params; scene/ fills it from YAML.
 typedef struct ty_generator
 {
-    const char* kind;             // the recipe's `kind:`, e.g. "aggregate"
-    const char* build_id;         // changes when the same recipe would give another result
-    const ty_param_table* params; // of the whole recipe
-    // Deterministic for any worker count. On failure *out is NULL. Cancelled: TY_INTERRUPTED.
-    // TY_NOT_AT_REST still gives *out (the best state, its metrics say so).
-    ty_status (*make)(const void* def, ty_workers* workers, ty_aggregate** out, ty_error* error);
+    const char* kind;     // the recipe's `kind:`, e.g. "aggregate"
+    const char* build_id; // changes when the same recipe would give another result
+    ty_product product;
+    const ty_param_table* params;        // of the whole recipe
+    int (*frame_count)(const void* def); // of a sequence, at least 1; else NULL
+    // Deterministic for any worker count. On failure *out is as before. Cancelled: TY_INTERRUPTED.
+    // TY_NOT_AT_REST still gives an aggregate (the best state, its metrics say so).
+    ty_status (*make)(const void* def, ty_workers* workers, ty_made* out, ty_error* error);
 } ty_generator;
 
 const ty_generator* ty_generator_find(const char* kind); // NULL if unknown

@@ -12,5 +12,6 @@ TY_CHECKED ty_status ty_mesh_read(const char* path, ty_mesh** out, ty_error* err
 TY_CHECKED ty_status ty_ply_read_memory(const char* name, const void* bytes, size_t size, ty_mesh** out,
                                         ty_error* error);
 
-// Binary little-endian PLY with normals, uv (s, t), curvature and attributes where present. Atomic.
+// Binary little-endian PLY with normals, uv (s, t), curvature and attributes where present, recipe and hash as
+// comments. Atomic.
 TY_CHECKED ty_status ty_ply_write(const char* path, const ty_mesh* mesh, ty_error* error);

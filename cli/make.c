@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// `tsuya pack`, `tsuya fill` and `tsuya roots`: a recipe to a file, or to files by number.
+#include "cli.h"
+#include <stdio.h>
+#include <string.h>
+#include <tsuya/base/file.h>
+#include <tsuya/base/log.h>
+
+// What a command makes and where it may go.
+typedef struct product
+{
+    const char *command, *kind, *extension;
+    bool is_sequence;
+} product;
+
+static const product products[] = {
+    {"pack", "aggregate", "glb", false},
+    {"fill", "fill", "exr", true},
+    {"roots", "roots", "ply", false},
+};
+
+static const product* find_product(const ty_command* command)
+{
+    const product* found = products;
+    while (strcmp(found->command, command->name) != 0)
+        found++;
+    return found;
+}
+
+static ty_status check_output(const ty_arguments* arguments, const product* p, const char* output)
+{
+    ty_error error;
+    char path[TY_PATH_MAX];
+    if (!output)
+        return ty_usage(arguments->command, "where to? give -o %s", arguments->command->options[0].value);
+    if (strcmp(ty_path_extension(output), p->extension) != 0)
+        return ty_usage(arguments->command, "the output '%s' must end in .%s", output, p->extension);
+    if (ty_path_is_sequence(output) != p->is_sequence)
+        return ty_usage(arguments->command,
+                        p->is_sequence ? "the output '%s' needs #### where the number of a frame goes"
+                                       : "the output '%s' is one file: it has no #",
+                        output);
+    ty_path_frame(output, 1, path);
+    ty_status status = ty_output_probe(path, &error); // before minutes of work
+    if (status != TY_OK)
+        ty_log_error(&error);
+    return status;
+}
+
+static ty_status run(const ty_arguments* arguments)
+{
+    static ty_scene_arguments scene_arguments;
+    const product* p = find_product(arguments->command);
+    const char* output = ty_argument_text(arguments, "output", NULL);
+    ty_status status = check_output(arguments, p, output);
+    if (status == TY_OK)
+        status = ty_scene_arguments_read(arguments, &scene_arguments);
+    if (status != TY_OK)
+        return status;
+    ty_error_list errors = {0};
+    double start = ty_time_now();
+    status = ty_recipe_make(arguments->positional[0], p->kind, output, &scene_arguments.options, &errors);
+    ty_errors_log(&errors);
+    ty_scene_arguments_term(&scene_arguments);
+    if (status != TY_OK && status != TY_NOT_AT_REST)
+        return status;
+    ty_log(TY_LOG_INFO, "made in %.1f s", ty_time_now() - start);
+    printf("%s\n", output);
+    ty_status printed = ty_output_finish();
+    return status == TY_OK ? printed : status;
+}
+
+#define OPTIONS(name, value, help)                                                                                     \
+    static const ty_option name[] = {                                                                                  \
+        {"output", 'o', value, help},                                                                                  \
+        TY_SCENE_OPTIONS,                                                                                              \
+    }
+
+OPTIONS(pack_options, "OUT.glb", "the aggregate to write");
+OPTIONS(fill_options, "OUT.####.exr", "the frames to write, from 1");
+OPTIONS(roots_options, "OUT.ply", "the mesh to write");
+
+const ty_command ty_command_pack = {
+    "pack",
+    "RECIPE -o OUT.glb",
+    "make an aggregate from its recipe",
+    "tsuya pack scenes/rice_bowl/rice_heap.yaml -o out/rice_heap.glb --set seed=2",
+    1,
+    1,
+    pack_options,
+    TY_PARAM_COUNT(pack_options),
+    run,
+};
+
+const ty_command ty_command_fill = {
+    "fill",
+    "RECIPE -o OUT.####.exr",
+    "make the frames of a living pattern from its recipe",
+    "tsuya fill scenes/still_life/fill.yaml -o 'out/fill.####.exr' --set seed=2",
+    1,
+    1,
+    fill_options,
+    TY_PARAM_COUNT(fill_options),
+    run,
+};
+
+const ty_command ty_command_roots = {
+    "roots",
+    "RECIPE -o OUT.ply",
+    "make the mesh of roots on a host from its recipe",
+    "tsuya roots scenes/still_life/roots.yaml -o out/roots.ply --set seed=2",
+    1,
+    1,
+    roots_options,
+    TY_PARAM_COUNT(roots_options),
+    run,
+};
