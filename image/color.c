@@ -92,6 +92,31 @@ const char* ty_color_guess_space(const ty_color* color, bool is_float, const cha
     return found ? found : usual;
 }
 
+static bool primaries_are(const float a[8], const float b[8])
+{
+    for (int i = 0; i < 8; i++)
+        if (!(fabsf(a[i] - b[i]) < 2e-4f))
+            return false;
+    return true;
+}
+
+const char* ty_chromaticities_space(const float chromaticities[8])
+{
+    static const struct
+    {
+        const char* name;
+        float primaries[8];
+    } known[] = {
+        {"ACEScg", {0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f}},
+        {"ACES2065-1", {0.7347f, 0.2653f, 0.0f, 1.0f, 0.0001f, -0.077f, 0.32168f, 0.33767f}},
+        {"lin_rec709", {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}},
+    };
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (primaries_are(chromaticities, known[i].primaries))
+            return known[i].name;
+    return NULL;
+}
+
 // "unknown <kind> 'name'; did you mean 'x'? known: a, b, c"
 static ty_status unknown_name(ty_error* error, const char* kind, const char* name, const char* const* known, int count)
 {

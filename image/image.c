@@ -8,6 +8,7 @@
 #include <tsuya/base/file.h>
 #include <tsuya/base/math.h>
 #include <tsuya/base/memory.h>
+#include <tsuya/image/color.h>
 #include <tsuya/image/image.h>
 
 enum
@@ -64,31 +65,11 @@ static ty_status check_info(const char* path, const char* format, const ty_oiio_
     return ty_image_check_claim(path, info->width, info->height, bytes_per_pixel, size, error);
 }
 
-static bool primaries_are(const float a[8], const float b[8])
-{
-    for (int i = 0; i < 8; i++)
-        if (!(fabsf(a[i] - b[i]) < 2e-4f))
-            return false;
-    return true;
-}
-
 // Chromaticities say more than a reader's default for its format.
 static const char* space_of(const ty_oiio_info* info)
 {
-    static const struct
-    {
-        const char* name;
-        float primaries[8];
-    } known[] = {
-        {"ACEScg", {0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f}},
-        {"ACES2065-1", {0.7347f, 0.2653f, 0.0f, 1.0f, 0.0001f, -0.077f, 0.32168f, 0.33767f}},
-        {"lin_rec709", {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}},
-    };
-    if (info->has_chromaticities)
-        for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-            if (primaries_are(info->chromaticities, known[i].primaries))
-                return known[i].name;
-    return info->color_space;
+    const char* space = info->has_chromaticities ? ty_chromaticities_space(info->chromaticities) : NULL;
+    return space ? space : info->color_space;
 }
 
 static ty_status read_open(const char* path, const char* format, ty_oiio_input* input, const ty_oiio_info* info,
@@ -177,7 +158,8 @@ static ty_status check_output(const char* path, const ty_image* image, int bits,
     return TY_OK;
 }
 
-static ty_status write_levels(const char* path, const ty_image* image, int bits, const void* levels, ty_error* error)
+static ty_status encode_levels(const char* path, const ty_image* image, int bits, const void* levels, ty_bytes* out,
+                               ty_error* error)
 {
     char text[512];
     ty_oiio_output* output = NULL;
@@ -187,13 +169,17 @@ static ty_status write_levels(const char* path, const ty_image* image, int bits,
         return shim_status(result, path, "cannot write", text, error);
     size_t size = 0;
     const void* bytes = ty_oiio_output_bytes(output, &size);
-    ty_status status = ty_file_write(path, bytes, size, error);
+    out->data = TY_TRY_ALLOC(uint8_t, size + 1);
+    if (out->data)
+        memcpy(out->data, bytes, size);
+    out->size = out->data ? size : 0;
     ty_oiio_output_destroy(output);
-    return status;
+    return out->data ? TY_OK : shim_status(TY_OIIO_NO_MEMORY, path, "", "", error);
 }
 
-ty_status ty_image_write(const char* path, const ty_image* image, int bits, ty_error* error)
+ty_status ty_image_encode(const char* path, const ty_image* image, int bits, ty_bytes* out, ty_error* error)
 {
+    *out = (ty_bytes){0};
     ty_status status = check_output(path, image, bits, error);
     if (status)
         return status;
@@ -202,7 +188,17 @@ ty_status ty_image_write(const char* path, const ty_image* image, int bits, ty_e
     if (!levels)
         return shim_status(TY_OIIO_NO_MEMORY, path, "", "", error);
     quantise(image->pixels, count, bits, levels);
-    status = write_levels(path, image, bits, levels, error);
+    status = encode_levels(path, image, bits, levels, out, error);
     ty_free(levels);
+    return status;
+}
+
+ty_status ty_image_write(const char* path, const ty_image* image, int bits, ty_error* error)
+{
+    ty_bytes bytes;
+    ty_status status = ty_image_encode(path, image, bits, &bytes, error);
+    if (status == TY_OK)
+        status = ty_file_write(path, bytes.data, bytes.size, error);
+    ty_bytes_term(&bytes);
     return status;
 }

@@ -19,6 +19,10 @@ const char* ty_color_choose(const char* command_line, const char* scene, const c
 // sRGB texture for integers and linear Rec.709 for floats.
 const char* ty_color_guess_space(const ty_color* color, bool is_float, const char* claim);
 
+// The space with these primaries and white (rx ry gx gy bx by wx wy): "ACEScg", "ACES2065-1", "lin_rec709"; NULL for
+// others.
+const char* ty_chromaticities_space(const float chromaticities[8]);
+
 // In place on pixel_count pixels of `channels` floats (3 or 4; alpha untouched) from one space to another.
 TY_CHECKED ty_status ty_color_convert(const ty_color* color, const char* from, const char* to, float* pixels,
                                       int pixel_count, int channels, ty_error* error);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any image file through OpenImageIO, as interleaved floats.
 #pragma once
-#include <tsuya/base/status.h>
+#include <tsuya/base/file.h>
 
 typedef struct ty_image
 {
@@ -21,3 +21,5 @@ TY_CHECKED ty_status ty_image_read(const char* path, ty_image* out, ty_error* er
 // Writes PNG (8 or 16 bit), JPEG or TIFF by extension, atomically; values clamp to 0..1. channels 1, 3 or 4. bits 8 or
 // 16; 8 bit is dithered by nothing: equal input, equal bytes. JPEG has 8 bits and no alpha.
 TY_CHECKED ty_status ty_image_write(const char* path, const ty_image* image, int bits, ty_error* error);
+// The same into memory, owned by the caller; path gives the format and stands in messages.
+TY_CHECKED ty_status ty_image_encode(const char* path, const ty_image* image, int bits, ty_bytes* out, ty_error* error);
