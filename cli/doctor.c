@@ -35,18 +35,14 @@ static void check_trace(json_t* root)
     ty_world_def def = ty_world_def_default();
     ty_affine identity = ty_affine_identity();
     uint32_t prototype = 0, object = 0;
-    bool ok =
-        ty_shape_create(&shape, &mesh, &error) == TY_OK && ty_world_create(&def, &world, &error) == TY_OK &&
-        ty_world_add_prototype(world, mesh, &prototype, &error) == TY_OK &&
-        ty_world_add_object(world, prototype, &identity, (ty_object_flags){false, true}, &object, &error) == TY_OK &&
-        ty_world_commit(world, &error) == TY_OK;
+    bool ok = ty_shape_create(&shape, &mesh, &error) == TY_OK && ty_world_create(&def, &world, &error) == TY_OK &&
+              ty_world_add_prototype(world, mesh, &prototype, &error) == TY_OK &&
+              ty_world_add_object(world, prototype, ty_motion_at_rest(&identity),
+                                  (ty_object_flags){.mask = TY_MASK_OPAQUE}, &object, &error) == TY_OK &&
+              ty_world_commit(world, &error) == TY_OK;
     if (ok)
     {
-        ty_ray ray = {.origin = {0.01f, 0.02f, 3},
-                      .direction = {0, 0, -1},
-                      .t_max = TY_FLOAT_MAX,
-                      .skip_object = TY_NONE,
-                      .skip_instance = TY_NONE};
+        ty_ray ray = ty_ray_make((ty_vec3){0.01f, 0.02f, 3}, (ty_vec3){0, 0, -1}, TY_FLOAT_MAX);
         ty_hit hit;
         ok = ty_world_intersect(world, &ray, &hit) && fabsf(hit.t - 2.0f) < 0.01f;
     }

@@ -6,15 +6,13 @@
 
 static void find_object(const ty_world* world, uint32_t geometry, uint32_t* object, uint32_t* instance)
 {
+    *object = geometry;
+    *instance = 0;
     if (world->path == TY_TRACE_REFERENCE)
     {
-        *object = world->instance_object[geometry];
-        *instance = geometry - world->objects[*object].first;
-    }
-    else
-    {
-        *object = geometry;
-        *instance = 0;
+        const ty_trace_object* found = ty_trace_object_of(world, geometry);
+        *object = found->index;
+        *instance = geometry - found->first;
     }
 }
 
@@ -36,6 +34,13 @@ void ty_trace_filter(const struct RTCFilterFunctionNArguments* args)
     float facing = hit->Ng_x * local->dir_x + hit->Ng_y * local->dir_y + hit->Ng_z * local->dir_z;
     if ((ray->flags & TY_RAY_FRONT_ONLY) && context->world->objects[object].closed_subsurface && facing > 0.0f)
         args->valid[0] = 0;
+}
+
+RTCFilterFunctionN ty_trace_needed_filter(const ty_trace_object* object, const ty_ray* ray, uint32_t instance)
+{
+    bool front_only = (ray->flags & TY_RAY_FRONT_ONLY) && object->closed_subsurface;
+    bool skip = ray->skip_object == object->index && ray->skip_instance == instance;
+    return front_only || skip ? ty_trace_filter : NULL;
 }
 
 // On the fast path the filters of aggregates are set below their callbacks; this one serves Embree's instances.
@@ -71,6 +76,8 @@ static ty_trace_context make_context(const ty_world* world, const ty_ray* ray)
 bool ty_world_intersect(const ty_world* world, const ty_ray* ray, ty_hit* hit)
 {
     struct RTCRayHit ray_hit = {.ray = make_ray(ray->origin, ray->t_min, ray->direction, ray->t_max)};
+    ray_hit.ray.mask = ray->mask;
+    ray_hit.ray.time = ray->time;
     ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     ty_trace_context context = make_context(world, ray);
@@ -85,12 +92,15 @@ bool ty_world_intersect(const ty_world* world, const ty_ray* ray, ty_hit* hit)
     hit->t = ray_hit.ray.tfar;
     hit->u = ray_hit.hit.u;
     hit->v = ray_hit.hit.v;
+    hit->time = ray->time;
     return true;
 }
 
 bool ty_world_occluded(const ty_world* world, const ty_ray* ray)
 {
     struct RTCRay r = make_ray(ray->origin, ray->t_min, ray->direction, ray->t_max);
+    r.mask = ray->mask;
+    r.time = ray->time;
     ty_trace_context context = make_context(world, ray);
     ty_embree_occluded(world->scene, &context.embree, top_filter(world, ray), &r);
     return r.tfar < 0.0f;
@@ -106,25 +116,26 @@ static bool intersect_mesh(const ty_world* world, uint32_t prototype, ty_vec3 or
     return ray_hit->hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
-static void fill_hit(const struct RTCRayHit* ray_hit, uint32_t object, uint32_t instance, ty_hit* hit)
+static void fill_hit(const struct RTCRayHit* ray_hit, uint32_t object, uint32_t instance, float time, ty_hit* hit)
 {
     *hit = (ty_hit){.t = ray_hit->ray.tfar,
                     .u = ray_hit->hit.u,
                     .v = ray_hit->hit.v,
                     .object = object,
                     .instance = instance,
-                    .triangle = ray_hit->hit.primID};
+                    .triangle = ray_hit->hit.primID,
+                    .time = time};
 }
 
-bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_t instance, ty_vec3 origin,
+bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_t instance, float time, ty_vec3 origin,
                                  ty_vec3 direction, float t_max, ty_hit* hit)
 {
-    const ty_affine* to_local = ty_world_to_local(world, object, instance);
+    ty_affine to_local = ty_world_to_local(world, object, instance, time);
     struct RTCRayHit ray_hit;
-    if (!intersect_mesh(world, ty_world_prototype(world, object, instance), ty_map_point(to_local, origin), 0.0f,
-                        ty_map_vector(to_local, direction), t_max, &ray_hit))
+    if (!intersect_mesh(world, ty_world_prototype(world, object, instance), ty_map_point(&to_local, origin), 0.0f,
+                        ty_map_vector(&to_local, direction), t_max, &ray_hit))
         return false;
-    fill_hit(&ray_hit, object, instance, hit);
+    fill_hit(&ray_hit, object, instance, time, hit);
     return true;
 }
 
@@ -134,7 +145,7 @@ bool ty_world_intersect_prototype(const ty_world* world, uint32_t prototype, ty_
     struct RTCRayHit ray_hit;
     if (!intersect_mesh(world, prototype, origin, 0.0f, direction, t_max, &ray_hit))
         return false;
-    fill_hit(&ray_hit, TY_NONE, TY_NONE, hit);
+    fill_hit(&ray_hit, TY_NONE, TY_NONE, 0.0f, hit);
     return true;
 }
 

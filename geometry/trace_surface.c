@@ -36,31 +36,40 @@ static float reach(const corners* c, const ty_affine* m)
     return ty_max(sum.x, ty_max(sum.y, sum.z));
 }
 
+// Normals go by the inverse transpose: the cofactors over the determinant, of which the sign alone matters. They stay
+// outward under a mirror.
+static ty_affine cofactors(const ty_affine* m)
+{
+    ty_affine c = {ty_cross(m->y, m->z), ty_cross(m->z, m->x), ty_cross(m->x, m->y), {0, 0, 0}};
+    float scale = 1.0f / ty_dot(c.x, m->x);
+    return (ty_affine){ty_mul(c.x, scale), ty_mul(c.y, scale), ty_mul(c.z, scale), {0, 0, 0}};
+}
+
 void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point* out)
 {
     const ty_mesh* mesh = ty_world_mesh(world, hit->object, hit->instance);
-    const ty_affine* to_world = ty_world_to_world(world, hit->object, hit->instance);
-    const ty_affine* to_local = ty_world_to_local(world, hit->object, hit->instance);
+    ty_affine to_world = ty_world_to_world(world, hit->object, hit->instance, hit->time);
     corners c = corners_of(mesh, hit->triangle, hit->u, hit->v);
     ty_vec3 p0 = mesh->positions[c.v[0]];
     ty_vec3 e1 = ty_sub(mesh->positions[c.v[1]], p0), e2 = ty_sub(mesh->positions[c.v[2]], p0);
-    // Normals go by the inverse transpose, which keeps them outward under a mirror too.
-    ty_vec3 ng = ty_normalize(ty_map_transpose(to_local, ty_normalize(ty_cross(ty_normalize(e1), ty_normalize(e2)))));
-    ty_vec3 ns = ty_normalize(ty_map_transpose(to_local, ty_normalize(blend3(&c, mesh->normals))));
+    ty_affine m = cofactors(&to_world);
+    ty_vec3 ng = ty_normalize(ty_map_vector(&m, ty_normalize(ty_cross(ty_normalize(e1), ty_normalize(e2)))));
+    ty_vec3 ns = ty_normalize(ty_map_vector(&m, ty_normalize(blend3(&c, mesh->normals))));
     float side = ty_dot(ns, ng);
     if (side < 0.0f)
         ns = ty_neg(ns);
     else if (side == 0.0f)
         ns = ng;
-    *out = (ty_surface_point){.position = ty_map_point(to_world, blend3(&c, mesh->positions)),
+    *out = (ty_surface_point){.position = ty_map_point(&to_world, blend3(&c, mesh->positions)),
                               .ng = ng,
                               .ns = ns,
-                              .reach = reach(&c, to_world),
+                              .reach = reach(&c, &to_world),
                               .object = hit->object,
                               .instance = hit->instance,
                               .triangle = hit->triangle,
                               .u = hit->u,
-                              .v = hit->v};
+                              .v = hit->v,
+                              .time = hit->time};
     if (mesh->uvs)
     {
         ty_vec2 a = mesh->uvs[c.v[0]], b = mesh->uvs[c.v[1]], d = mesh->uvs[c.v[2]];

@@ -16,9 +16,9 @@ bool ty_world_tangents(const ty_world* world, const ty_surface_point* point, ty_
     float determinant = u1 * v2 - u2 * v1, scale = 1.0f / determinant;
     if (!(fabsf(scale) < TY_FLOAT_MAX))
         return false;
-    const ty_affine* to_world = ty_world_to_world(world, point->object, point->instance);
-    ty_vec3 pu = ty_map_vector(to_world, ty_mul(ty_sub(ty_mul(e1, v2), ty_mul(e2, v1)), scale));
-    ty_vec3 pv = ty_map_vector(to_world, ty_mul(ty_sub(ty_mul(e2, u1), ty_mul(e1, u2)), scale));
+    ty_affine to_world = ty_world_to_world(world, point->object, point->instance, point->time);
+    ty_vec3 pu = ty_map_vector(&to_world, ty_mul(ty_sub(ty_mul(e1, v2), ty_mul(e2, v1)), scale));
+    ty_vec3 pv = ty_map_vector(&to_world, ty_mul(ty_sub(ty_mul(e2, u1), ty_mul(e1, u2)), scale));
     float area = ty_length_sqr(ty_cross(pu, pv));
     if (!(area > 0.0f) || !(area < TY_FLOAT_MAX))
         return false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An aggregate as one Embree user geometry over its instances, with an ellipsoid test before the prototype's tree.
 #include "trace_world.h"
+#include <tsuya/base/memory.h>
 
 // World box of an instance: the mapped ellipsoid's box cut by the mapped bounding box, whichever is tighter on each
 // side.
@@ -23,12 +24,23 @@ static ty_bounds instance_bounds(const ty_trace_prototype* prototype, const ty_a
     return (ty_bounds){ty_sub(box.low, pad3), ty_add(box.high, pad3)};
 }
 
+static const ty_trace_prototype* prototype_at(const ty_trace_object* object, uint32_t instance)
+{
+    return &object->world->prototypes[ty_trace_prototype_of(object, instance)];
+}
+
+// To the world; for a moving object to its own space.
+static ty_affine placed(const ty_trace_object* object, uint32_t instance)
+{
+    ty_affine inner = ty_trace_inner_map(object, instance);
+    return object->step_count > 1 ? inner : ty_affine_multiply(&object->steps[0], &inner);
+}
+
 static void write_bounds(const struct RTCBoundsFunctionArguments* args)
 {
     const ty_trace_object* object = args->geometryUserPtr;
-    const ty_world* world = object->world;
-    uint32_t i = object->first + args->primID;
-    ty_bounds box = instance_bounds(&world->prototypes[world->instance_prototype[i]], &world->to_world[i]);
+    ty_affine map = placed(object, args->primID);
+    ty_bounds box = instance_bounds(prototype_at(object, args->primID), &map);
     *args->bounds_o =
         (struct RTCBounds){box.low.x, box.low.y, box.low.z, 0.0f, box.high.x, box.high.y, box.high.z, 0.0f};
 }
@@ -56,15 +68,14 @@ static bool may_meet_ellipsoid(const ty_trace_prototype* prototype, const ty_aff
 }
 
 // The ray in the prototype's space; the direction keeps its length in world space, so t means the same in both.
-static bool enter_instance(const ty_world* world, const ty_trace_object* object, const ty_trace_context* outer,
-                           uint32_t primitive, const struct RTCRay* ray, struct RTCRay* local)
+static bool enter_instance(const ty_trace_object* object, const ty_trace_context* outer, uint32_t primitive,
+                           const struct RTCRay* ray, struct RTCRay* local)
 {
     const ty_ray* r = outer->ray;
     if (r->skip_object == object->index && r->skip_instance == primitive && r->skip_distance >= TY_FLOAT_MAX)
         return false;
-    uint32_t i = object->first + primitive;
-    const ty_trace_prototype* prototype = &world->prototypes[world->instance_prototype[i]];
-    const ty_affine* to_local = &world->to_local[i];
+    const ty_trace_prototype* prototype = prototype_at(object, primitive);
+    const ty_affine* to_local = &object->to_local[primitive];
     ty_vec3 o = ty_map_point(to_local, ty_vec3_make(ray->org_x, ray->org_y, ray->org_z));
     ty_vec3 d = ty_map_vector(to_local, ty_vec3_make(ray->dir_x, ray->dir_y, ray->dir_z));
     if (prototype->has_ellipsoid && !may_meet_ellipsoid(prototype, to_local, o, d, ray->tnear, ray->tfar))
@@ -79,31 +90,23 @@ static bool enter_instance(const ty_world* world, const ty_trace_object* object,
     return true;
 }
 
-// The filter is asked only where it can reject something.
-static RTCFilterFunctionN needed_filter(const ty_trace_object* object, const ty_ray* ray, uint32_t primitive)
-{
-    bool front_only = (ray->flags & TY_RAY_FRONT_ONLY) && object->closed_subsurface;
-    bool skip = ray->skip_object == object->index && ray->skip_instance == primitive;
-    return front_only || skip ? ty_trace_filter : NULL;
-}
-
 static void intersect_instance(const struct RTCIntersectFunctionNArguments* args)
 {
     if (!args->valid[0])
         return;
     const ty_trace_object* object = args->geometryUserPtr;
-    const ty_world* world = object->world;
     const ty_trace_context* outer = (const ty_trace_context*)args->context;
     struct RTCRayHit* ray_hit = (struct RTCRayHit*)args->rayhit;
     struct RTCRayHit local;
-    if (!enter_instance(world, object, outer, args->primID, &ray_hit->ray, &local.ray))
+    if (!enter_instance(object, outer, args->primID, &ray_hit->ray, &local.ray))
         return;
     local.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     local.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    ty_trace_context inner = {.world = world, .ray = outer->ray, .object = object->index, .instance = args->primID};
+    ty_trace_context inner = {
+        .world = object->world, .ray = outer->ray, .object = object->index, .instance = args->primID};
     ty_embree_context_init(&inner.embree);
-    RTCScene scene = world->prototypes[world->instance_prototype[object->first + args->primID]].scene;
-    ty_embree_intersect(scene, &inner.embree, needed_filter(object, outer->ray, args->primID), &local);
+    RTCScene scene = prototype_at(object, args->primID)->scene;
+    ty_embree_intersect(scene, &inner.embree, ty_trace_needed_filter(object, outer->ray, args->primID), &local);
     if (local.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return;
     ray_hit->ray.tfar = local.ray.tfar;
@@ -119,16 +122,16 @@ static void occlude_instance(const struct RTCOccludedFunctionNArguments* args)
     if (!args->valid[0])
         return;
     const ty_trace_object* object = args->geometryUserPtr;
-    const ty_world* world = object->world;
     const ty_trace_context* outer = (const ty_trace_context*)args->context;
     struct RTCRay* ray = (struct RTCRay*)args->ray;
     struct RTCRay local;
-    if (!enter_instance(world, object, outer, args->primID, ray, &local))
+    if (!enter_instance(object, outer, args->primID, ray, &local))
         return;
-    ty_trace_context inner = {.world = world, .ray = outer->ray, .object = object->index, .instance = args->primID};
+    ty_trace_context inner = {
+        .world = object->world, .ray = outer->ray, .object = object->index, .instance = args->primID};
     ty_embree_context_init(&inner.embree);
-    RTCScene scene = world->prototypes[world->instance_prototype[object->first + args->primID]].scene;
-    ty_embree_occluded(scene, &inner.embree, needed_filter(object, outer->ray, args->primID), &local);
+    RTCScene scene = prototype_at(object, args->primID)->scene;
+    ty_embree_occluded(scene, &inner.embree, ty_trace_needed_filter(object, outer->ray, args->primID), &local);
     if (local.tfar < 0.0f)
         ray->tfar = local.tfar;
 }
@@ -138,11 +141,17 @@ RTCGeometry ty_trace_create_user_geometry(const ty_world* world, ty_trace_object
     RTCGeometry geometry = rtcNewGeometry(world->device, RTC_GEOMETRY_TYPE_USER);
     if (!geometry)
         return NULL;
+    object->to_local = TY_ALLOC(ty_affine, object->count);
+    for (uint32_t i = 0; i < object->count; i++)
+    {
+        ty_affine map = placed(object, i);
+        if (!ty_affine_invert(&map, &object->to_local[i]))
+            object->to_local[i] = ty_affine_identity();
+    }
     rtcSetGeometryUserPrimitiveCount(geometry, object->count);
     rtcSetGeometryUserData(geometry, object);
     rtcSetGeometryBoundsFunction(geometry, write_bounds, NULL);
     rtcSetGeometryIntersectFunction(geometry, intersect_instance);
     rtcSetGeometryOccludedFunction(geometry, occlude_instance);
-    rtcCommitGeometry(geometry);
     return geometry;
 }

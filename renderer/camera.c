@@ -31,7 +31,8 @@ ty_ray ty_camera_ray(const ty_camera* camera, float x, float y, ty_vec2 lens)
     float sy = (1.0f - 2.0f * y * camera->inverse_size[1]) * camera->half_height;
     ty_vec3 direction =
         ty_mad(ty_mad(camera->forward, camera->right, sx), camera->up, sy); // to the plane at distance 1
-    ty_ray ray = {.origin = camera->origin, .t_max = TY_FLOAT_MAX, .skip_object = TY_NONE, .skip_instance = TY_NONE};
+    ty_ray ray = ty_ray_make(camera->origin, direction, TY_FLOAT_MAX);
+    ray.mask = TY_MASK_CAMERA;
     if (camera->lens_radius > 0.0f)
     {
         ty_vec2 p = ty_sample_disc(lens);

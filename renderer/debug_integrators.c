@@ -22,7 +22,8 @@ static float mean_curvature(const ty_world* world, const ty_surface_point* point
     float sum =
         ty_world_interpolate(world, point, mesh->curvature_1) + ty_world_interpolate(world, point, mesh->curvature_2);
     // Stretched instances are taken at the mean of their scale: cube root of the volume ratio.
-    float volume = fabsf(ty_affine_determinant(ty_world_to_world(world, point->object, point->instance)));
+    ty_affine map = ty_world_to_world(world, point->object, point->instance, point->time);
+    float volume = fabsf(ty_affine_determinant(&map));
     return 0.5f * sum / ty_pow(volume, 1.0f / 3.0f);
 }
 
@@ -35,11 +36,9 @@ static float ambient_occlusion(const ty_integrator* in, const ty_sampler* sample
     ty_vec3 ng = ty_dot(bsdf->point.ng, bsdf->wo) < 0.0f ? ty_neg(bsdf->point.ng) : bsdf->point.ng;
     if (!(ty_dot(wi, ng) > 0.0f))
         return 0.0f;
-    ty_ray ray = {.origin = ty_offset_origin(&bsdf->point, ng),
-                  .direction = wi,
-                  .t_max = in->scene->render.ao_distance,
-                  .skip_object = TY_NONE,
-                  .skip_instance = TY_NONE};
+    ty_ray ray = ty_ray_make(ty_offset_origin(&bsdf->point, ng), wi, in->scene->render.ao_distance);
+    ray.mask = TY_MASK_SHADOW;
+    ray.time = bsdf->point.time;
     counters->shadow_rays++;
     return ty_world_occluded(in->scene->world, &ray) ? 0.0f : 1.0f;
 }

@@ -29,6 +29,7 @@ static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sa
         return false;
     p->view = (ty_light_view){.from = bsdf->point.position, .pdf = sample->pdf, .full = sample->delta};
     ty_bsdf_spawn(bsdf, sample->wi, u, &p->ray);
+    p->ray.mask = sample->transmitted ? TY_MASK_TRANSMISSION : sample->delta ? TY_MASK_GLOSSY : TY_MASK_DIFFUSE;
     return true;
 }
 

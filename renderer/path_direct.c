@@ -14,6 +14,7 @@ ty_rgb ty_path_direct_light(const ty_integrator* in, const ty_bsdf* bsdf, const 
         return value;
     ty_ray shadow;
     ty_bsdf_spawn(bsdf, light.wi, u[3], &shadow);
+    shadow.mask = TY_MASK_SHADOW;
     if (light.distance < TY_FLOAT_MAX)
         shadow.t_max = light.distance * TY_LIGHT_REACH;
     counters->shadow_rays++;
@@ -29,6 +30,7 @@ ty_rgb ty_path_light_along(const ty_integrator* in, const ty_bsdf* bsdf, const t
     ty_ray ray;
     bool covered;
     ty_bsdf_spawn(bsdf, sample->wi, u, &ray);
+    ray.mask = TY_MASK_GLOSSY;
     if (ty_rgb_is_black(ty_light_set_along(&in->lights, &ray, TY_FLOAT_MAX, &view, &covered)))
         return (ty_rgb){0};
     ty_hit hit;

@@ -113,7 +113,7 @@ static void warn_untextured(const ty_loader* loader, const ty_scene_object* obje
 
 static ty_object_flags object_flags(const ty_loader* loader, const ty_scene_object* object, const ty_asset* asset)
 {
-    ty_object_flags flags = {.camera_visible = true};
+    ty_object_flags flags = {.mask = TY_MASK_OPAQUE};
     for (uint32_t k = 0; k < ty_scene_material_count(object); ++k)
         flags.closed_subsurface |= ty_material_is_subsurface(loader->scene->materials[ty_scene_material_at(object, k)]);
     meshes all = asset_meshes(asset);
@@ -135,13 +135,15 @@ static ty_status add_object(ty_loader* loader, int index, ty_error* error)
     ty_status status = TY_OK;
     if (asset->aggregate)
     {
-        status = ty_world_add_aggregate(scene->world, asset->aggregate, &entry->transform, flags, &number, error);
+        status = ty_world_add_aggregate(scene->world, asset->aggregate, ty_motion_at_rest(&entry->transform), flags,
+                                        &number, error);
     }
     else
     {
         status = ty_world_add_prototype(scene->world, asset->mesh, &prototype, error);
         if (status == TY_OK)
-            status = ty_world_add_object(scene->world, prototype, &entry->transform, flags, &number, error);
+            status = ty_world_add_object(scene->world, prototype, ty_motion_at_rest(&entry->transform), flags, &number,
+                                         error);
     }
     TY_ASSERT(status != TY_OK || number == (uint32_t)index);
     return status;
@@ -176,7 +178,8 @@ static ty_status make_depth_fields(ty_loader* loader, ty_error* error)
     ty_status status = TY_OK;
     for (uint32_t i = 0; i < count && status == TY_OK; ++i)
     {
-        scene->triangle_count += ty_world_prototype_mesh(scene->world, i)->triangle_count;
+        const ty_mesh* mesh = ty_world_prototype_mesh(scene->world, i);
+        scene->triangle_count += mesh ? mesh->triangle_count : 0;
         if (needed[i])
             status = ty_depth_field_create(scene->world, i, &scene->depth_fields[i], error);
     }
@@ -216,18 +219,6 @@ static void set_shading(ty_loader* loader)
                                           .vertex_attributes = vertex_attributes(loader)};
 }
 
-// The world has its own copies of where instances stand.
-static void release_transforms(struct ty_scene_resources* resources)
-{
-    for (int i = 0; i < resources->aggregate_count; ++i)
-    {
-        ty_free(resources->aggregates[i]->transforms);
-        ty_free(resources->aggregates[i]->prototype_index);
-        resources->aggregates[i]->transforms = NULL;
-        resources->aggregates[i]->prototype_index = NULL;
-    }
-}
-
 void ty_build_world(ty_loader* loader)
 {
     ty_scene* scene = loader->scene;
@@ -255,6 +246,5 @@ void ty_build_world(ty_loader* loader)
         return;
     }
     set_shading(loader);
-    release_transforms(scene->resources);
     scene->build_seconds = ty_time_now() - start;
 }

@@ -94,7 +94,10 @@ void ty_bsdf_spawn(const ty_bsdf* bsdf, ty_vec3 wi, float u, ty_ray* ray)
         .direction = wi,
         .t_max = TY_FLOAT_MAX,
         .flags = TY_RAY_FRONT_ONLY,
+        .skip_object = TY_NONE,
         .skip_instance = TY_NONE,
+        .mask = TY_MASK_ALL,
+        .time = p->time,
     };
     bool below = ty_dot(wi, bsdf->frame.n) < 0.0f;
     // What leaves a convex body on its outer side cannot meet it again, the facets of its mesh apart.

@@ -77,13 +77,13 @@ bool ty_cdrf_depth_exit(const ty_shading_context* context, const ty_surface_poin
     const ty_depth_field* field = context->depth_fields ? context->depth_fields[prototype] : NULL;
     if (!field || mean_free_path <= 0.0f)
         return false;
-    const ty_affine* to_world = ty_world_to_world(world, x->object, x->instance);
+    ty_affine to_world = ty_world_to_world(world, x->object, x->instance, x->time);
     interior in = {world, ty_world_prototype_mesh(world, prototype), prototype,
                    ty_world_interpolate(world, x, field->depth)};
     float curvature = ty_world_interpolate(world, x, field->curvature), k = 0.5f * curvature + 1.0f / in.thickness;
-    float free_path = mean_free_path / ty_instance_scale(to_world);
+    float free_path = mean_free_path / ty_instance_scale(&to_world);
     float depth = ty_min((1.0f - ty_exp(-ty_cdrf_poisson_t(k * free_path))) / k, 0.95f * in.thickness);
-    ty_vec3 p = position_local(in.mesh, x), n = ty_normalize(ty_map_transpose(to_world, x->ns));
+    ty_vec3 p = position_local(in.mesh, x), n = ty_normalize(ty_map_transpose(&to_world, x->ns));
     // Too shallow for the coordinates to tell p from x: the light leaves where it entered.
     if (depth < 1e-6f * (fabsf(p.x) + fabsf(p.y) + fabsf(p.z)))
         return false;
@@ -93,6 +93,7 @@ bool ty_cdrf_depth_exit(const ty_shading_context* context, const ty_surface_poin
         return false;
     hit.object = x->object;
     hit.instance = x->instance;
+    hit.time = x->time;
     ty_world_surface(world, &hit, exit);
     return true;
 }

@@ -65,13 +65,14 @@ bool ty_cdrf_probe_exit(const ty_shading_context* context, const ty_bsdf* b, con
 {
     const ty_surface_point* x = &b->point;
     const ty_mesh* mesh = ty_world_mesh(context->world, x->object, x->instance);
-    ty_bounds box = ty_bounds_map(ty_world_to_world(context->world, x->object, x->instance), mesh->bounds);
+    ty_affine to_world = ty_world_to_world(context->world, x->object, x->instance, x->time);
+    ty_bounds box = ty_bounds_map(&to_world, mesh->bounds);
     ty_vec3 outward, y = probe_start(b, u, &outward);
     // From beyond the far side of the box, through it.
     float size = ty_length(ty_sub(box.high, box.low)), start = size + ty_length(ty_sub(y, x->position));
     ty_hit hit;
-    if (ty_world_intersect_instance(context->world, x->object, x->instance, ty_mad(y, outward, start), ty_neg(outward),
-                                    2.0f * start, &hit))
+    if (ty_world_intersect_instance(context->world, x->object, x->instance, x->time, ty_mad(y, outward, start),
+                                    ty_neg(outward), 2.0f * start, &hit))
     {
         hit.object = x->object;
         hit.instance = x->instance;

@@ -15,7 +15,8 @@ float ty_mean_curvature(const ty_world* world, const ty_surface_point* point)
         return 0.0f;
     float k1 = ty_world_interpolate(world, point, mesh->curvature_1);
     float k2 = ty_world_interpolate(world, point, mesh->curvature_2);
-    return 0.5f * (k1 + k2) / ty_instance_scale(ty_world_to_world(world, point->object, point->instance));
+    ty_affine to_world = ty_world_to_world(world, point->object, point->instance, point->time);
+    return 0.5f * (k1 + k2) / ty_instance_scale(&to_world);
 }
 
 void ty_second_form(const ty_world* world, const ty_surface_point* point, ty_vec3 t, ty_vec3 b, float form[3])
@@ -24,16 +25,16 @@ void ty_second_form(const ty_world* world, const ty_surface_point* point, ty_vec
     const ty_mesh* mesh = ty_world_mesh(world, point->object, point->instance);
     if (!mesh->curvature_1 || !mesh->curvature_2)
         return;
-    const ty_affine* to_world = ty_world_to_world(world, point->object, point->instance);
+    ty_affine to_world = ty_world_to_world(world, point->object, point->instance, point->time);
     const uint32_t* corner = mesh->triangles[point->triangle];
     const float share[3] = {1.0f - point->u - point->v, point->u, point->v};
-    float per_scale = 1.0f / ty_instance_scale(to_world);
+    float per_scale = 1.0f / ty_instance_scale(&to_world);
     for (int i = 0; i < 3; i++)
     {
         float k1 = mesh->curvature_1[corner[i]], k2 = mesh->curvature_2[corner[i]], c = 0.707106781f, s = c;
         if (mesh->direction_1)
         {
-            ty_vec3 e = ty_map_vector(to_world, mesh->direction_1[corner[i]]);
+            ty_vec3 e = ty_map_vector(&to_world, mesh->direction_1[corner[i]]);
             float et = ty_dot(e, t), eb = ty_dot(e, b), length_sqr = et * et + eb * eb;
             float inverse = length_sqr > 0.0f ? 1.0f / sqrtf(length_sqr) : 0.0f;
             c = et * inverse;

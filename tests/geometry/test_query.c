@@ -20,9 +20,9 @@ static void add(ty_world* world, const ty_mesh* mesh, ty_affine map, uint32_t* p
 {
     ty_error error;
     uint32_t object;
-    ty_object_flags flags = {.camera_visible = true};
+    ty_object_flags flags = {.mask = TY_MASK_OPAQUE};
     assert_int_equal(ty_world_add_prototype(world, mesh, prototype, &error), TY_OK);
-    assert_int_equal(ty_world_add_object(world, *prototype, &map, flags, &object, &error), TY_OK);
+    assert_int_equal(ty_world_add_object(world, *prototype, ty_motion_at_rest(&map), flags, &object, &error), TY_OK);
 }
 
 static int set_up(void** state)
@@ -150,7 +150,8 @@ static void inward_normals_are_turned(void** state)
     assert_int_equal(ty_world_commit(s.world, &error), TY_OK);
     ty_hit hit;
     ty_surface_point q;
-    assert_true(ty_world_intersect_instance(s.world, 0, 0, (ty_vec3){0, 0, 0}, (ty_vec3){0.6f, 0, 0.8f}, 10.0f, &hit));
+    assert_true(
+        ty_world_intersect_instance(s.world, 0, 0, 0.0f, (ty_vec3){0, 0, 0}, (ty_vec3){0.6f, 0, 0.8f}, 10.0f, &hit));
     ty_world_surface(s.world, &hit, &q);
     assert_true(ty_dot(q.ns, (ty_vec3){0.6f, 0, 0.8f}) > 0.99f);
     ty_world_destroy(s.world);
@@ -177,11 +178,7 @@ static void inside_by_formula(void** state)
 
 static ty_ray ray_at(ty_vec3 origin, ty_vec3 target)
 {
-    return (ty_ray){.origin = origin,
-                    .direction = ty_normalize(ty_sub(target, origin)),
-                    .t_max = TY_FLOAT_MAX,
-                    .skip_object = TY_NONE,
-                    .skip_instance = TY_NONE};
+    return ty_ray_make(origin, ty_normalize(ty_sub(target, origin)), TY_FLOAT_MAX);
 }
 
 static void surface_of_a_stretched_sphere(void** state)
@@ -231,12 +228,13 @@ static void one_instance_alone(void** state)
     const stage* s = *state;
     ty_hit hit;
     // From the centre of the stretched sphere along z: its half axis; the torus is never seen.
-    assert_true(ty_world_intersect_instance(s->world, 0, 0, (ty_vec3){0, 0, 0}, (ty_vec3){0, 0, 1}, 10.0f, &hit));
+    assert_true(ty_world_intersect_instance(s->world, 0, 0, 0.0f, (ty_vec3){0, 0, 0}, (ty_vec3){0, 0, 1}, 10.0f, &hit));
     assert_true(fabsf(hit.t - 0.5f) < 1e-4f);
     assert_int_equal(hit.object, 0);
     assert_int_equal(hit.instance, 0);
-    assert_false(ty_world_intersect_instance(s->world, 0, 0, (ty_vec3){0, 0, 0}, (ty_vec3){0, 0, 1}, 0.4f, &hit));
-    assert_false(ty_world_intersect_instance(s->world, 0, 0, (ty_vec3){5, 0, 0}, (ty_vec3){1, 0, 0}, 100.0f, &hit));
+    assert_false(ty_world_intersect_instance(s->world, 0, 0, 0.0f, (ty_vec3){0, 0, 0}, (ty_vec3){0, 0, 1}, 0.4f, &hit));
+    assert_false(
+        ty_world_intersect_instance(s->world, 0, 0, 0.0f, (ty_vec3){5, 0, 0}, (ty_vec3){1, 0, 0}, 100.0f, &hit));
     assert_true(ty_world_intersect_prototype(s->world, s->sphere_prototype, (ty_vec3){0, 0, 0}, (ty_vec3){0, 2, 0},
                                              10.0f, &hit));
     assert_true(fabsf(hit.t - 0.5f) < 1e-4f);

@@ -40,7 +40,9 @@ static stage make_stage(const ty_vec2 uvs[3])
     uint32_t prototype, object;
     assert_int_equal(ty_world_create(&def, &s.world, &error), TY_OK);
     assert_int_equal(ty_world_add_prototype(s.world, s.mesh, &prototype, &error), TY_OK);
-    assert_int_equal(ty_world_add_object(s.world, prototype, &s.map, (ty_object_flags){0}, &object, &error), TY_OK);
+    assert_int_equal(
+        ty_world_add_object(s.world, prototype, ty_motion_at_rest(&s.map), (ty_object_flags){0}, &object, &error),
+        TY_OK);
     assert_int_equal(ty_world_commit(s.world, &error), TY_OK);
     return s;
 }

@@ -12,8 +12,8 @@
 #define INSTANCES 500u
 #define RAYS 20000
 
-static const ty_object_flags opaque = {.camera_visible = true};
-static const ty_object_flags subsurface = {.closed_subsurface = true, .camera_visible = true};
+static const ty_object_flags opaque = {.mask = TY_MASK_OPAQUE};
+static const ty_object_flags subsurface = {.closed_subsurface = true, .mask = TY_MASK_OPAQUE};
 
 // Spheres and non-convex tori, stretched and mirrored, overlapping in a cube of 2 x 2 x 2.
 static ty_aggregate* make_heap(uint64_t key)
@@ -53,11 +53,14 @@ static ty_world* build_world(stage* s, ty_trace_path path)
     ty_affine small = ty_affine_from_trs((ty_vec3){-0.7f, 0.0f, 0.1f}, ty_quat_identity(), (ty_vec3){0.5f, 0.3f, 0.5f});
     assert_int_equal(ty_world_create(&def, &world, &error), TY_OK);
     assert_int_equal(ty_world_add_prototype(world, s->first->prototypes[1], &prototype, &error), TY_OK);
-    assert_int_equal(ty_world_add_object(world, prototype, &plain, opaque, &object, &error), TY_OK);
-    assert_int_equal(ty_world_add_aggregate(world, s->first, &identity, opaque, &object, &error), TY_OK);
-    assert_int_equal(ty_world_add_aggregate(world, s->second, &turned, subsurface, &object, &error), TY_OK);
+    assert_int_equal(ty_world_add_object(world, prototype, ty_motion_at_rest(&plain), opaque, &object, &error), TY_OK);
+    assert_int_equal(ty_world_add_aggregate(world, s->first, ty_motion_at_rest(&identity), opaque, &object, &error),
+                     TY_OK);
+    assert_int_equal(ty_world_add_aggregate(world, s->second, ty_motion_at_rest(&turned), subsurface, &object, &error),
+                     TY_OK);
     assert_int_equal(ty_world_add_prototype(world, s->sphere, &prototype, &error), TY_OK);
-    assert_int_equal(ty_world_add_object(world, prototype, &small, subsurface, &object, &error), TY_OK);
+    assert_int_equal(ty_world_add_object(world, prototype, ty_motion_at_rest(&small), subsurface, &object, &error),
+                     TY_OK);
     assert_int_equal(object, 3);
     assert_int_equal(ty_world_commit(world, &error), TY_OK);
     return world;
@@ -98,11 +101,7 @@ static ty_ray random_ray(ty_rng* rng, int i)
         direction = ty_normalize(ty_sub(random_point(rng, 1.0f), origin));
     }
     float reach = ty_rng_range(rng, 0.0f, 0.5f);
-    return (ty_ray){.origin = origin,
-                    .direction = direction,
-                    .t_max = i % 5 == 0 ? reach : TY_FLOAT_MAX,
-                    .skip_object = TY_NONE,
-                    .skip_instance = TY_NONE};
+    return ty_ray_make(origin, direction, i % 5 == 0 ? reach : TY_FLOAT_MAX);
 }
 
 typedef struct tally
@@ -240,11 +239,9 @@ static void one_sided_objects(void** state)
             ty_world_surface(s->world[path], &hit, &point);
             assert_true(ty_dot(point.ng, ray.direction) < 0.0f);
         }
-        const ty_affine* map = ty_world_to_world(s->world[path], 3, 0);
-        ty_ray ray = {
-            .origin = map->t, .direction = {0, 1, 0}, .t_max = 0.35f, .skip_object = TY_NONE, .skip_instance = TY_NONE};
+        ty_affine map = ty_world_to_world(s->world[path], 3, 0, 0.0f);
+        ty_ray ray = ty_ray_make(map.t, (ty_vec3){0, 1, 0}, 0.35f);
         ty_hit hit;
-        ray.skip_object = TY_NONE;
         int walls[2] = {0, 0};
         for (uint32_t flags = 0; flags < 2; flags++)
         {
@@ -297,7 +294,8 @@ static void far_from_the_origin(void** state)
     {
         ty_world_def def = {(ty_trace_path)path, NULL};
         assert_int_equal(ty_world_create(&def, &world[path], &error), TY_OK);
-        assert_int_equal(ty_world_add_aggregate(world[path], s->first, &away, opaque, &object, &error), TY_OK);
+        assert_int_equal(
+            ty_world_add_aggregate(world[path], s->first, ty_motion_at_rest(&away), opaque, &object, &error), TY_OK);
         assert_int_equal(ty_world_commit(world[path], &error), TY_OK);
     }
     ty_rng rng = ty_rng_make((ty_seed){12}, 0, 0);
@@ -332,7 +330,7 @@ static void fast_path_cuts_nothing(void** state)
     ty_affine identity = ty_affine_identity();
     uint32_t object;
     assert_int_equal(ty_world_create(&def, &world, &error), TY_OK);
-    assert_int_equal(ty_world_add_aggregate(world, heap, &identity, opaque, &object, &error), TY_OK);
+    assert_int_equal(ty_world_add_aggregate(world, heap, ty_motion_at_rest(&identity), opaque, &object, &error), TY_OK);
     assert_int_equal(ty_world_commit(world, &error), TY_OK);
     ty_rng rng = ty_rng_make((ty_seed){13}, 0, 0);
     int hits = 0;
@@ -346,7 +344,7 @@ static void fast_path_cuts_nothing(void** state)
         nearest.t = TY_FLOAT_MAX;
         bool any = false;
         for (uint32_t k = 0; k < INSTANCES; k++)
-            if (ty_world_intersect_instance(world, 0, k, ray.origin, ray.direction, nearest.t, &one) &&
+            if (ty_world_intersect_instance(world, 0, k, 0.0f, ray.origin, ray.direction, nearest.t, &one) &&
                 one.t < nearest.t)
             {
                 nearest = one;
@@ -372,7 +370,8 @@ static void numbering(void** state)
     assert_ptr_equal(ty_world_mesh(world, 3, 0), s->sphere);
     assert_ptr_equal(ty_world_mesh(world, 0, 0), s->first->prototypes[1]);
     assert_int_equal(ty_world_prototype(world, 0, 0), ty_world_prototype(world, 1, 1));
-    assert_memory_equal(ty_world_to_world(world, 1, 7), &s->first->transforms[7], sizeof(ty_affine));
+    ty_affine map = ty_world_to_world(world, 1, 7, 0.0f);
+    assert_memory_equal(&map, &s->first->transforms[7], sizeof map);
     assert_true(ty_world_topology(world, 0)->closed);
     assert_false(ty_world_topology(world, 0)->convex);
     assert_true(ty_world_topology(world, ty_world_prototype(world, 3, 0))->convex);
@@ -394,13 +393,15 @@ static void bad_input(void** state)
     ty_affine flat = ty_affine_identity();
     flat.z.z = 0.0f;
     assert_int_equal(ty_world_add_prototype(world, s->sphere, &prototype, &error), TY_OK);
-    assert_int_equal(ty_world_add_object(world, prototype, &flat, opaque, &object, &error), TY_BAD_INPUT);
+    assert_int_equal(ty_world_add_object(world, prototype, ty_motion_at_rest(&flat), opaque, &object, &error),
+                     TY_BAD_INPUT);
     s->first->transforms[41].t.x = NAN;
     ty_affine identity = ty_affine_identity();
-    assert_int_equal(ty_world_add_aggregate(world, s->first, &identity, opaque, &object, &error), TY_BAD_INPUT);
+    assert_int_equal(ty_world_add_aggregate(world, s->first, ty_motion_at_rest(&identity), opaque, &object, &error),
+                     TY_BAD_INPUT);
     assert_non_null(strstr(error.text, "instance 41"));
     assert_int_equal(ty_world_commit(world, &error), TY_OK);
-    ty_ray ray = {.direction = {0, 0, 1}, .t_max = TY_FLOAT_MAX, .skip_object = TY_NONE, .skip_instance = TY_NONE};
+    ty_ray ray = ty_ray_make((ty_vec3){0}, (ty_vec3){0, 0, 1}, TY_FLOAT_MAX);
     ty_hit hit;
     assert_false(ty_world_intersect(world, &ray, &hit));
     assert_false(ty_world_occluded(world, &ray));

@@ -20,7 +20,7 @@ static ty_light rectangle_make(float width, float height)
 
 static ty_ray ray_make(ty_vec3 origin, ty_vec3 direction)
 {
-    return (ty_ray){origin, 0.0f, direction, TY_FLOAT_MAX, 0, TY_NONE, TY_NONE, 0.0f};
+    return ty_ray_make(origin, direction, TY_FLOAT_MAX);
 }
 
 // Solid angle of the rectangle by brute force over its area.

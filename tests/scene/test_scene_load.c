@@ -174,14 +174,12 @@ static void objects_stand_in_the_world(void** state)
     assert_ptr_equal(ty_world_mesh(s->world, 2, 0), ty_world_mesh(s->world, 3, 0));
     assert_non_null(ty_world_mesh(s->world, 2, 0)->curvature_1);
     // scale, then rotate about y by 90 degrees, then translate: +z goes to +x
-    ty_vec3 p = ty_map_point(ty_world_to_world(s->world, 1, 0), ty_vec3_make(0.0f, 0.0f, 0.5f));
+    ty_affine standing = ty_world_to_world(s->world, 1, 0, 0.0f);
+    ty_vec3 p = ty_map_point(&standing, ty_vec3_make(0.0f, 0.0f, 0.5f));
     fixture_near(p.x, 2.0f, 1e-5f);
     fixture_near(p.y, 2.0f, 1e-5f);
     fixture_near(p.z, 3.0f, 1e-5f);
-    ty_ray ray = {.origin = {4.0f, 1.0f, 0.0f},
-                  .direction = {0.0f, -1.0f, 0.0f},
-                  .t_max = TY_FLOAT_MAX,
-                  .skip_instance = TY_NONE};
+    ty_ray ray = ty_ray_make((ty_vec3){4.0f, 1.0f, 0.0f}, (ty_vec3){0.0f, -1.0f, 0.0f}, TY_FLOAT_MAX);
     ty_hit hit;
     assert_true(ty_world_intersect(s->world, &ray, &hit));
     assert_int_equal(hit.object, 0);

@@ -38,11 +38,7 @@ static void load_world(const char* text)
 static const ty_material* material_at(float x, uint32_t object)
 {
     ty_hit hit;
-    ty_ray ray = {.origin = {x, 0.5f, 1.0f},
-                  .direction = {0, 0, -1},
-                  .t_max = 10.0f,
-                  .skip_object = TY_NONE,
-                  .skip_instance = TY_NONE};
+    ty_ray ray = ty_ray_make((ty_vec3){x, 0.5f, 1.0f}, (ty_vec3){0, 0, -1}, 10.0f);
     assert_true(ty_world_intersect(fixture_scene->world, &ray, &hit));
     return ty_scene_material(fixture_scene, object, hit.instance, hit.triangle);
 }

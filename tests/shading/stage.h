@@ -24,8 +24,9 @@ static inline void stage_init(stage* s, const ty_shape_def* shape, const ty_affi
     assert_int_equal(ty_world_create(&def, &s->world, &error), TY_OK);
     assert_int_equal(ty_world_add_prototype(s->world, s->mesh, &prototype, &error), TY_OK);
     for (int i = 0; i < count; i++)
-        assert_int_equal(
-            ty_world_add_object(s->world, prototype, &maps[i], (ty_object_flags){true, true}, &object, &error), TY_OK);
+        assert_int_equal(ty_world_add_object(s->world, prototype, ty_motion_at_rest(&maps[i]),
+                                             (ty_object_flags){true, TY_MASK_OPAQUE}, &object, &error),
+                         TY_OK);
     assert_int_equal(ty_world_commit(s->world, &error), TY_OK);
     assert_int_equal(ty_depth_field_create(s->world, prototype, &s->field, &error), TY_OK);
     s->fields[0] = s->field;
@@ -59,7 +60,7 @@ static inline ty_shape_def shape_of(ty_shape_kind kind, float x, float y, float 
 // The surface seen from `from` looking along `direction`.
 static inline ty_surface_point seen(const stage* s, ty_vec3 from, ty_vec3 direction)
 {
-    ty_ray ray = {.origin = from, .direction = direction, .t_max = TY_FLOAT_MAX, .skip_instance = TY_NONE};
+    ty_ray ray = ty_ray_make(from, direction, TY_FLOAT_MAX);
     ty_hit hit;
     ty_surface_point p;
     assert_true(ty_world_intersect(s->world, &ray, &hit));

@@ -448,8 +448,9 @@ static void test_glass_ball_vanishes(void** state)
     ty_world_def def = ty_world_def_default();
     assert_int_equal(ty_world_create(&def, &s.world, &error), TY_OK);
     assert_int_equal(ty_world_add_prototype(s.world, s.mesh, &prototype, &error), TY_OK);
-    assert_int_equal(
-        ty_world_add_object(s.world, prototype, &identity, (ty_object_flags){false, true}, &object, &error), TY_OK);
+    assert_int_equal(ty_world_add_object(s.world, prototype, ty_motion_at_rest(&identity),
+                                         (ty_object_flags){false, TY_MASK_OPAQUE}, &object, &error),
+                     TY_OK);
     assert_int_equal(ty_world_commit(s.world, &error), TY_OK);
     s.field = NULL;
     s.context = (ty_shading_context){.world = s.world};

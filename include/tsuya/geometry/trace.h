@@ -15,6 +15,20 @@ typedef enum ty_ray_flags
         1, // objects marked closed_subsurface are seen from outside only: back-face hits are passed through
 } ty_ray_flags;
 
+// Who sees what: a ray meets an object only if their masks share a bit. A ray carries the bits of its own kind, an
+// object those of the rays that may see it.
+typedef enum ty_mask
+{
+    TY_MASK_CAMERA = 1,
+    TY_MASK_DIFFUSE = 2,
+    TY_MASK_GLOSSY = 4,
+    TY_MASK_TRANSMISSION = 8,
+    TY_MASK_SHADOW = 16,             // objects that stop light altogether
+    TY_MASK_SHADOW_TRANSPARENT = 32, // objects with opacity: shadow rays meet them only when they ask
+    TY_MASK_OPAQUE = 31,             // an ordinary object
+    TY_MASK_ALL = 63,
+} ty_mask;
+
 typedef struct ty_ray
 {
     ty_vec3 origin;
@@ -25,13 +39,27 @@ typedef struct ty_ray
     uint32_t skip_object;   // with skip_instance: hits on this instance nearer than skip_distance are passed through
     uint32_t skip_instance; // TY_NONE = skip nothing
     float skip_distance;    // TY_FLOAT_MAX = the whole instance
+    uint32_t mask;          // ty_mask; 0 meets nothing
+    float time;             // within the shutter: 0 = it opens, 1 = it closes
 } ty_ray;
+
+// A ray that skips nothing, meets every object, at time 0.
+static inline ty_ray ty_ray_make(ty_vec3 origin, ty_vec3 direction, float t_max)
+{
+    return (ty_ray){.origin = origin,
+                    .direction = direction,
+                    .t_max = t_max,
+                    .skip_object = TY_NONE,
+                    .skip_instance = TY_NONE,
+                    .mask = TY_MASK_ALL};
+}
 
 typedef struct ty_hit
 {
     float t;
     float u, v;                          // barycentric weights of vertices 1 and 2
     uint32_t object, instance, triangle; // instance is the index within the object (0 for a plain object)
+    float time;                          // the ray's
 } ty_hit;
 
 typedef enum ty_trace_path
@@ -53,26 +81,48 @@ void ty_world_destroy(ty_world* world); // NULL is allowed
 typedef struct ty_object_flags
 {
     bool closed_subsurface; // honours TY_RAY_FRONT_ONLY
-    bool camera_visible;    // reserved for visibility by ray kind: set true
+    uint32_t mask;          // ty_mask: the rays that may meet it
 } ty_object_flags;
 
-// Adds a prototype; the mesh is borrowed and must outlive the world. Equal pointers give the same index: its BVH is
-// built once.
+// Where an object stands while the shutter is open: maps at even steps, the first at time 0 and the last at time 1;
+// one step = at rest. Between steps the rotation is interpolated on the sphere and the rest linearly, in substeps of at
+// most 4 degrees that are linear themselves, so that every query finds the object at the same place. Copied.
+typedef struct ty_motion
+{
+    const ty_affine* steps;
+    int step_count; // 1 .. TY_MOTION_MAX_STEPS
+} ty_motion;
+
+#define TY_MOTION_MAX_STEPS 33
+
+static inline ty_motion ty_motion_at_rest(const ty_affine* map)
+{
+    return (ty_motion){map, 1};
+}
+
+// Adds a prototype; the mesh is borrowed and must outlive the world, or its removal. Equal pointers give the same
+// index: its BVH is built once.
 TY_CHECKED ty_status ty_world_add_prototype(ty_world* world, const ty_mesh* mesh, uint32_t* prototype, ty_error* error);
-// A plain object: one prototype under one map. Objects are numbered in order of addition, from 0.
-TY_CHECKED ty_status ty_world_add_object(ty_world* world, uint32_t prototype, const ty_affine* transform,
-                                         ty_object_flags flags, uint32_t* object, ty_error* error);
-// An aggregate under one map; its transforms are composed with it. Borrowed until commit only (arrays are copied).
-TY_CHECKED ty_status ty_world_add_aggregate(ty_world* world, const ty_aggregate* aggregate, const ty_affine* transform,
+// A plain object: one prototype in one place. Objects are numbered in order of addition, from 0.
+TY_CHECKED ty_status ty_world_add_object(ty_world* world, uint32_t prototype, ty_motion motion, ty_object_flags flags,
+                                         uint32_t* object, ty_error* error);
+// An aggregate in one place, moving as a whole. Borrowed until the objects are cleared or the world is destroyed: its
+// transforms and prototype_index stay in use.
+TY_CHECKED ty_status ty_world_add_aggregate(ty_world* world, const ty_aggregate* aggregate, ty_motion motion,
                                             ty_object_flags flags, uint32_t* object, ty_error* error);
-// Builds. Deterministic: the same input gives the same tree. After this the world is const.
+// Builds. Deterministic: the same input gives the same tree. After this the world is const until it is cleared.
 TY_CHECKED ty_status ty_world_commit(ty_world* world, ty_error* error);
+// Takes all objects away; prototypes and their trees stay. For the next frame: add objects and commit again.
+void ty_world_clear_objects(ty_world* world);
+// Takes a prototype away that no object uses (a mesh that deforms: remove the last frame's, add this one's). The
+// indices of others stay; its own is given to a later addition.
+void ty_world_remove_prototype(ty_world* world, uint32_t prototype);
 
 bool ty_world_intersect(const ty_world* world, const ty_ray* ray, ty_hit* hit); // nearest; false = none, *hit untouched
 bool ty_world_occluded(const ty_world* world, const ty_ray* ray);
 
-// Against one instance alone, world space; skips and flags are ignored. Used for interior rays and probes.
-bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_t instance, ty_vec3 origin,
+// Against one instance alone, world space, as it stands at a time. Used for interior rays and probes.
+bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_t instance, float time, ty_vec3 origin,
                                  ty_vec3 direction, float t_max, ty_hit* hit);
 // The same against a prototype in its own space; direction need not be unit, t in its units.
 bool ty_world_intersect_prototype(const ty_world* world, uint32_t prototype, ty_vec3 origin, ty_vec3 direction,
@@ -95,15 +145,16 @@ bool ty_world_inside(const ty_world* world, uint32_t prototype, ty_vec3 p);
 const ty_mesh* ty_world_mesh(const ty_world* world, uint32_t object, uint32_t instance);
 uint32_t ty_world_prototype(const ty_world* world, uint32_t object, uint32_t instance);
 const ty_mesh_topology* ty_world_topology(const ty_world* world, uint32_t prototype);
-uint32_t ty_world_prototype_count(const ty_world* world);
-const ty_mesh* ty_world_prototype_mesh(const ty_world* world, uint32_t prototype);
-// Prototype to world, and back.
-const ty_affine* ty_world_to_world(const ty_world* world, uint32_t object, uint32_t instance);
-const ty_affine* ty_world_to_local(const ty_world* world, uint32_t object, uint32_t instance);
+uint32_t ty_world_prototype_count(const ty_world* world); // one more than the largest index in use
+const ty_mesh* ty_world_prototype_mesh(const ty_world* world, uint32_t prototype); // NULL = removed
+// Prototype to world at a time, and back. Not stored but made: keep the result where it is needed twice.
+ty_affine ty_world_to_world(const ty_world* world, uint32_t object, uint32_t instance, float time);
+ty_affine ty_world_to_local(const ty_world* world, uint32_t object, uint32_t instance, float time);
+bool ty_world_is_moving(const ty_world* world, uint32_t object);
 // The kernels in use, as `isa` names them: with the build, what the bits of a picture depend on.
 const char* ty_world_isa(const ty_world* world);
-ty_bounds ty_world_bounds(const ty_world* world);
-uint64_t ty_world_memory(const ty_world* world); // bytes, Embree's and ours
+ty_bounds ty_world_bounds(const ty_world* world); // over the whole shutter
+uint64_t ty_world_memory(const ty_world* world);  // bytes, Embree's and ours
 
 // Surface at a hit.
 typedef struct ty_surface_point
@@ -116,6 +167,7 @@ typedef struct ty_surface_point
     uint32_t object, instance, triangle;
     float u, v;           // barycentric
     ty_vec3 footprint[2]; // half axes of what a lookup averages over, along the triangle, world; zero = the point alone
+    float time;           // within the shutter
 } ty_surface_point;
 
 void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point* out);

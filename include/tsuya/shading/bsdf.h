@@ -91,6 +91,7 @@ ty_rgb ty_bsdf_albedo(const ty_bsdf* bsdf); // for the albedo AOV, about 0..1
 // has crossed it: multiply by exp(-absorption * distance).
 ty_rgb ty_bsdf_absorption(const ty_bsdf* bsdf);
 
-// Sets origin, direction, t_min, t_max = TY_FLOAT_MAX, flags and skips for a ray that leaves towards wi.
+// Sets origin, direction, t_min, t_max = TY_FLOAT_MAX, flags, skips, time and mask = TY_MASK_ALL for a ray that leaves
+// towards wi.
 // u: one number for the randomised own-shadow distance of `local` on non-convex instances.
 void ty_bsdf_spawn(const ty_bsdf* bsdf, ty_vec3 wi, float u, ty_ray* ray);
