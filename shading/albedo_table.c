@@ -33,15 +33,16 @@ static float integrate(float mu, float alpha, float eta)
 {
     if (alpha == 0.0f)
         return ty_fresnel(mu, eta);
+    ty_vec2 a = ty_ggx_round(alpha);
     ty_vec3 wo = ty_vec3_make(ty_safe_sqrt(1.0f - mu * mu), 0.0f, mu);
     float sum = 0.0f;
     for (int j = 0; j < RING_COUNT; j++)
         for (int i = 0; i < SPOKE_COUNT; i++)
         {
             ty_vec2 u = {0.5f * ((float)i + 0.5f) / SPOKE_COUNT, ((float)j + 0.5f) / RING_COUNT};
-            ty_vec3 h = ty_ggx_sample(wo, alpha, u), wi = ty_reflect(wo, h);
+            ty_vec3 h = ty_ggx_sample(wo, a, u), wi = ty_reflect(wo, h);
             if (wi.z > 0.0f)
-                sum += ty_fresnel(ty_dot(wo, h), eta) * ty_ggx_g2(wo, wi, alpha) / ty_ggx_g1(wo, alpha);
+                sum += ty_fresnel(ty_dot(wo, h), eta) * ty_ggx_g2(wo, wi, a) / ty_ggx_g1(wo, a);
         }
     return sum / (RING_COUNT * SPOKE_COUNT);
 }

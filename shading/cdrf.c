@@ -146,7 +146,7 @@ ty_rgb ty_coat_eval(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
     *pdf = 0.0f;
     if (wi.z <= 0.0f || wo.z <= 0.0f || b->coat_alpha == 0.0f)
         return ty_rgb_grey(0.0f);
-    float cos_h, d = ty_ggx_reflect(wo, wi, b->coat_alpha, pdf, &cos_h);
+    float cos_h, d = ty_ggx_reflect(wo, wi, ty_ggx_round(b->coat_alpha), pdf, &cos_h);
     return ty_rgb_grey(b->coat_weight * ty_fresnel(cos_h, b->coat_eta) * d);
 }
 
@@ -158,7 +158,7 @@ bool ty_coat_sample(const ty_bsdf* b, ty_vec3 wo, ty_vec2 u, ty_bsdf_sample* out
         out->weight = ty_rgb_grey(b->coat_weight * ty_fresnel(wo.z, b->coat_eta));
         return true;
     }
-    *out = (ty_bsdf_sample){.wi = ty_reflect(wo, ty_ggx_sample(wo, b->coat_alpha, u))};
+    *out = (ty_bsdf_sample){.wi = ty_reflect(wo, ty_ggx_sample(wo, ty_ggx_round(b->coat_alpha), u))};
     ty_rgb f = ty_coat_eval(b, wo, out->wi, &out->pdf);
     if (out->pdf <= 0.0f)
         return false;

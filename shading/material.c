@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials: creation from definitions, and the preparation of lobes at a point.
 #include "material_private.h"
+#include "microfacet.h"
 #include <tsuya/base/memory.h>
 #include <tsuya/shading/cdrf.h>
 
@@ -32,6 +33,29 @@ static ty_status check_range(const char* name, float value, float low, float hig
                         (double)high);
 }
 
+// The range of an input on which a table depends: one value, or all there are.
+static void table_range(const ty_input* input, float low, float high, float range[2])
+{
+    float value = ty_clamp(input->value.r, low, high);
+    range[0] = is_constant(input) ? value : low;
+    range[1] = is_constant(input) ? value : high;
+}
+
+static void make_loss_tables(ty_material* m)
+{
+    const ty_surface_def* s = &m->surface;
+    float roughness[2], ior[2], weight[2];
+    table_range(&s->specular_roughness, 0.0f, 1.0f, roughness);
+    table_range(&s->specular_ior, 1.0f, 3.0f, ior);
+    table_range(&s->specular_weight, 0.0f, 1.0f, weight);
+    if (roughness[1] < TY_SMOOTH_ROUGHNESS)
+        return;
+    if (!is_zero(&s->base_metalness) && !is_zero(&s->specular_weight))
+        m->conductor = ty_loss_table_create_conductor(roughness[0], roughness[1]);
+    if (!is_zero(&s->transmission_weight))
+        m->dielectric = ty_loss_table_create_dielectric(roughness[0], roughness[1], ior[0], ior[1], weight[1]);
+}
+
 ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** out, ty_error* error)
 {
     *out = NULL;
@@ -49,6 +73,7 @@ ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** ou
     float ior = def->specular_ior.value.r;
     m->specular = make_table(&def->specular_weight, &def->specular_roughness, fixed ? ior : 1.0f, fixed ? ior : 3.0f);
     m->coat = make_table(&def->coat_weight, &def->coat_roughness, def->coat_ior, def->coat_ior);
+    make_loss_tables(m);
     *out = m;
     return TY_OK;
 }
@@ -82,6 +107,8 @@ void ty_material_destroy(ty_material* material)
         return;
     ty_albedo_table_destroy(material->specular);
     ty_albedo_table_destroy(material->coat);
+    ty_loss_table_destroy(material->conductor);
+    ty_loss_table_destroy(material->dielectric);
     ty_poisson_table_destroy(material->poisson);
     ty_free(material);
 }

@@ -3,6 +3,7 @@
 #pragma once
 #include "albedo_table.h"
 #include "kernel_table.h"
+#include "loss_table.h"
 #include <tsuya/shading/material.h>
 
 typedef enum ty_material_model
@@ -18,6 +19,8 @@ struct ty_material
     ty_cdrf_def cdrf;
     ty_albedo_table* specular; // E of the dielectric specular of `surface`, or NULL where it has none
     ty_albedo_table* coat;     // E of the coat of `surface`, or of the specular reflection of `cdrf`
+    ty_loss_table* conductor;  // of the metal of `surface`, NULL where it has none or loses nothing
+    ty_loss_table* dielectric; // of its clear boundary, likewise
     ty_poisson_table* poisson; // for `local` with the Poisson kernel
 };
 

@@ -66,13 +66,11 @@ static void published_kernel_gains(void** state)
     assert_true(fabs(local - expected) < 0.005 && fabs(probe - expected) < 0.005);
 }
 
-// Single-scattering microfacets lose energy until they are compensated. How much is printed; for the metal it is the
-// directional albedo of GGX with Smith's height-correlated masking, integrated independently at the seen angles.
-static void rough_lobes_lose(void** state)
+// Facets that are met once only would lose up to 65 %.
+static void rough_things_vanish(void** state)
 {
     (void)state;
-    static const double roughness[] = {0.2, 0.4, 0.6, 0.8, 0.98};
-    static const double metal_expected[] = {0.998, 0.960, 0.810, 0.565, 0.354};
+    static const double roughness[] = {0.1, 0.3, 0.5, 0.8, 1.0};
     for (int i = 0; i < 5; i++)
     {
         char metal[128], glass[128];
@@ -80,10 +78,10 @@ static void rough_lobes_lose(void** state)
                  roughness[i]);
         snprintf(glass, sizeof glass,
                  "model: surface, transmission_weight: 1, specular_ior: 1.5, specular_roughness: %g", roughness[i]);
-        double values[2] = {gain(metal, 128), gain(glass, 128)};
+        double values[2] = {gain(metal, 256), gain(glass, 2048)};
         print_message("roughness %.2f: metal %.4f, dielectric %.4f\n", roughness[i], values[0], values[1]);
-        assert_true(fabs(values[0] - metal_expected[i]) < 0.004);
-        assert_true(values[1] <= 1.002 && values[1] > 0.9 * values[0]);
+        assert_true(fabs(values[0] - 1.0) < 0.003);
+        assert_true(fabs(values[1] - 1.0) < 0.003);
     }
 }
 
@@ -92,7 +90,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(white_things_vanish),
         cmocka_unit_test(published_kernel_gains),
-        cmocka_unit_test(rough_lobes_lose),
+        cmocka_unit_test(rough_things_vanish),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

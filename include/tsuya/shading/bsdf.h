@@ -27,6 +27,16 @@ typedef struct ty_albedo_row
     float average; // 2 * integral of E(mu) mu
 } ty_albedo_row;
 
+// What single scattering loses, 1 - E(mu), at the point's roughness and index: between four table slices.
+typedef struct ty_loss_row
+{
+    const float* slice; // owned by the material; NULL = nothing is lost
+    int next_roughness, next_eta;
+    float share_roughness, share_eta;
+    float average; // 2 * integral of (1 - E(mu)) mu
+    float spread;  // about proportional to 1 / (mu^2 + spread): how it is sampled
+} ty_loss_row;
+
 typedef struct ty_bsdf
 {
     ty_bsdf_kind kind;
@@ -44,14 +54,19 @@ typedef struct ty_bsdf
     ty_rgb specular_tint; // specular color
     ty_rgb transmission;  // factor for one crossing
     ty_rgb absorption;    // 1/m, of the medium behind the surface
-    float metalness, specular_weight, alpha, transmission_weight;
+    float metalness, specular_weight, transmission_weight;
+    ty_vec2 alpha;              // of the specular lobe along the frame's t and b; 0 = mirror
     float eta;                  // refractive index beyond the surface over that on wo's side
     float coat_weight;          // surface: of the coat; cdrf: of the specular reflection
     float coat_alpha, coat_eta; // alpha 0 = mirror
     ty_albedo_row specular_row; // E of the dielectric specular
     ty_albedo_row coat_row;     // E of the coat
     float layer_average;        // share of diffuse light that passes coat and specular
-    float lobe_probability[4];  // surface: coat, specular, diffuse, transmission; local: coat, cosine, uniform
+    // What facets lose that are met once only goes back as lobes in proportion to what is lost along wi.
+    ty_loss_row conductor_loss, near_loss, far_loss; // of the metal; of the clear boundary from wo's side and beyond
+    ty_rgb conductor_gain;                           // factor of conductor_loss(wi) cos
+    float near_gain, far_gain;                       // the same of near_loss and far_loss
+    float lobe_probability[6]; // surface: ty_surface_lobe; local: coat, cosine, uniform
 
     // cdrf
     float mean_free_path; // m, world

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+// `surface`: evaluation and sampling of its lobes.
+#include "fresnel.h"
+#include "material_private.h"
+#include "microfacet.h"
+#include "surface_private.h"
+
+// A lowered specular weight cannot undo total reflection. From within, the coat's inner side sends back a part of what
+// the boundary lets out.
+float ty_surface_boundary(const ty_bsdf* b, float cos_h)
+{
+    float f = ty_fresnel(cos_h, b->eta);
+    if (!(f < 1.0f))
+        return 1.0f;
+    f *= b->specular_weight;
+    if (b->inside && b->coat_weight > 0.0f)
+        f += (1.0f - f) * ty_coat_albedo(b, ty_safe_sqrt(1.0f - (1.0f - cos_h * cos_h) / (b->eta * b->eta)));
+    return f;
+}
+
+ty_rgb ty_surface_reflectance(const ty_bsdf* b, float cos_h)
+{
+    float dielectric = (1.0f - b->metalness) * ty_surface_boundary(b, cos_h);
+    if (b->inside) // from within only the clear share of the base is a boundary
+        dielectric *= b->transmission_weight;
+    ty_rgb sum = ty_rgb_scale(b->specular_tint, dielectric);
+    if (b->metalness > 0.0f)
+    {
+        ty_rgb metal = ty_fresnel_schlick(b->color, b->specular_tint, cos_h);
+        sum = ty_rgb_add(sum, ty_rgb_scale(metal, b->metalness * b->specular_weight));
+    }
+    return sum;
+}
+
+// The boundary's alone: the coat takes its part where the light is outside.
+ty_rgb ty_surface_transmittance(const ty_bsdf* b, float cos_h)
+{
+    float f = ty_fresnel(cos_h, b->eta);
+    return ty_rgb_scale(b->transmission, f < 1.0f ? ty_surface_clear(b) * (1.0f - f * b->specular_weight) : 0.0f);
+}
+
+// The smaller of both passages is reciprocal, exact for a mirror, and cannot create energy.
+float ty_surface_through_coat(const ty_bsdf* b, float mu_o, float mu_i)
+{
+    if (b->coat_weight <= 0.0f || b->inside)
+        return 1.0f;
+    return 1.0f - ty_max(ty_coat_albedo(b, mu_o), ty_coat_albedo(b, mu_i));
+}
+
+// The same share both ways: that of the direction outside.
+float ty_surface_across_coat(const ty_bsdf* b, float mu_o, float mu_i)
+{
+    return 1.0f - ty_coat_albedo(b, b->inside ? mu_i : mu_o);
+}
+
+float ty_surface_through_layers(const ty_bsdf* b, float mu)
+{
+    if (b->inside)
+        return 1.0f;
+    return (1.0f - ty_coat_albedo(b, mu)) * (1.0f - b->specular_weight * ty_albedo_row_at(&b->specular_row, mu));
+}
+
+static float diffuse_coupling(const ty_bsdf* b, float mu_o, float mu_i)
+{
+    return ty_surface_through_layers(b, mu_o) * ty_surface_through_layers(b, mu_i) / b->layer_average;
+}
+
+bool ty_surface_is_delta(const ty_bsdf* b)
+{
+    const float* p = b->lobe_probability;
+    return !(p[TY_LOBE_DIFFUSE] > 0.0f || p[TY_LOBE_LOST_ABOVE] > 0.0f ||
+             (p[TY_LOBE_COAT] > 0.0f && b->coat_alpha > 0.0f) ||
+             (b->alpha.x > 0.0f && p[TY_LOBE_SPECULAR] + p[TY_LOBE_TRANSMISSION] > 0.0f));
+}
+
+// The row by which what is lost above is sampled.
+static const ty_loss_row* row_above(const ty_bsdf* b)
+{
+    return b->conductor_loss.slice ? &b->conductor_loss : &b->near_loss;
+}
+
+// f of what the facets pass on among themselves and reflect in the end.
+static ty_rgb lost_reflectance(const ty_bsdf* b, float mu_o, float mu_i)
+{
+    float near = b->near_gain * ty_loss_row_at(&b->near_loss, mu_i);
+    ty_rgb lost = ty_rgb_add(ty_rgb_scale(b->conductor_gain, ty_loss_row_at(&b->conductor_loss, mu_i)),
+                             ty_rgb_scale(b->specular_tint, near));
+    return ty_rgb_scale(lost, ty_surface_through_coat(b, mu_o, mu_i));
+}
+
+// Probability that a facet of a rough boundary was chosen and reflects. Where the base is clear the facet is drawn
+// first and decides between reflection and refraction itself.
+static float facet_reflects(const ty_bsdf* b, float cos_h)
+{
+    const float* p = b->lobe_probability;
+    if (!(p[TY_LOBE_TRANSMISSION] > 0.0f))
+        return p[TY_LOBE_SPECULAR];
+    ty_rgb r = ty_surface_reflectance(b, cos_h), t = ty_surface_transmittance(b, cos_h);
+    float up = r.r + r.g + r.b, down = t.r + t.g + t.b;
+    return up > 0.0f ? (p[TY_LOBE_SPECULAR] + p[TY_LOBE_TRANSMISSION]) * (up / (up + down)) : 0.0f;
+}
+
+static float facet_transmits(const ty_bsdf* b, float cos_h)
+{
+    const float* p = b->lobe_probability;
+    return p[TY_LOBE_SPECULAR] + p[TY_LOBE_TRANSMISSION] - facet_reflects(b, cos_h);
+}
+
+static ty_rgb eval_reflection(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
+{
+    const float* p = b->lobe_probability;
+    ty_rgb f = {0};
+    if (p[TY_LOBE_COAT] > 0.0f && b->coat_alpha > 0.0f)
+    {
+        float coat_pdf;
+        f = ty_coat_eval(b, wo, wi, &coat_pdf);
+        *pdf += p[TY_LOBE_COAT] * coat_pdf;
+    }
+    if (p[TY_LOBE_SPECULAR] + p[TY_LOBE_TRANSMISSION] > 0.0f && b->alpha.x > 0.0f)
+    {
+        float lobe_pdf, cos_h, d = ty_ggx_reflect(wo, wi, b->alpha, &lobe_pdf, &cos_h);
+        float scale = d * ty_surface_through_coat(b, wo.z, wi.z);
+        f = ty_rgb_add(f, ty_rgb_scale(ty_surface_reflectance(b, cos_h), scale));
+        *pdf += facet_reflects(b, cos_h) * lobe_pdf;
+    }
+    if (p[TY_LOBE_DIFFUSE] > 0.0f)
+    {
+        float k = diffuse_coupling(b, wo.z, wi.z) * ty_surface_diffuse(b);
+        f = ty_rgb_add(f, ty_rgb_scale(b->color, k * wi.z * TY_INV_PI));
+        *pdf += p[TY_LOBE_DIFFUSE] * wi.z * TY_INV_PI;
+    }
+    if (p[TY_LOBE_LOST_ABOVE] > 0.0f)
+    {
+        f = ty_rgb_add(f, ty_rgb_scale(lost_reflectance(b, wo.z, wi.z), wi.z));
+        *pdf += p[TY_LOBE_LOST_ABOVE] * ty_loss_row_pdf(row_above(b), wi.z);
+    }
+    return f;
+}
+
+static ty_rgb eval_transmission(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
+{
+    const float* p = b->lobe_probability;
+    float coat = ty_surface_across_coat(b, wo.z, -wi.z);
+    ty_rgb f = {0};
+    if (p[TY_LOBE_TRANSMISSION] > 0.0f && b->alpha.x > 0.0f)
+    {
+        float lobe_pdf, cos_h, d = ty_ggx_refract(wo, wi, b->alpha, b->eta, &lobe_pdf, &cos_h);
+        f = ty_rgb_scale(ty_surface_transmittance(b, cos_h), d * coat);
+        *pdf += facet_transmits(b, cos_h) * lobe_pdf;
+    }
+    if (p[TY_LOBE_LOST_BELOW] > 0.0f)
+    {
+        float lost = b->far_gain * ty_loss_row_at(&b->far_loss, -wi.z) * -wi.z;
+        f = ty_rgb_add(f, ty_rgb_scale(b->transmission, lost * coat));
+        *pdf += p[TY_LOBE_LOST_BELOW] * ty_loss_row_pdf(&b->far_loss, -wi.z);
+    }
+    return f;
+}
+
+ty_rgb ty_surface_eval(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
+{
+    *pdf = 0.0f;
+    if (wi.z > 0.0f)
+        return eval_reflection(b, wo, wi, pdf);
+    return wi.z < 0.0f ? eval_transmission(b, wo, wi, pdf) : ty_rgb_grey(0.0f);
+}
+
+// A mirror-like lobe was chosen. False = nothing goes there.
+static bool sample_delta(const ty_bsdf* b, ty_vec3 wo, int lobe, ty_bsdf_sample* out)
+{
+    float probability = b->lobe_probability[lobe];
+    *out = (ty_bsdf_sample){.wi = ty_vec3_make(-wo.x, -wo.y, wo.z), .delta = true};
+    if (lobe == TY_LOBE_COAT)
+        out->weight = ty_rgb_grey(b->coat_weight * ty_fresnel(wo.z, b->coat_eta) / probability);
+    else if (lobe == TY_LOBE_SPECULAR)
+        out->weight =
+            ty_rgb_scale(ty_surface_reflectance(b, wo.z), ty_surface_through_coat(b, wo.z, wo.z) / probability);
+    else
+    {
+        if (!ty_refract(wo, ty_vec3_make(0, 0, 1), b->eta, &out->wi))
+            return false;
+        out->transmitted = true;
+        float coat = ty_surface_across_coat(b, wo.z, -out->wi.z);
+        out->weight = ty_rgb_scale(ty_surface_transmittance(b, wo.z), coat / probability);
+    }
+    return true;
+}
+
+static ty_vec3 around_normal(float mu, float turn)
+{
+    float sine, cosine, radius = ty_safe_sqrt(1.0f - mu * mu);
+    ty_sincos(2.0f * TY_PI * turn, &sine, &cosine);
+    return ty_vec3_make(radius * cosine, radius * sine, mu);
+}
+
+// A facet of the base's boundary: reflects or refracts. u_share: where in the choice of both lobes the number lay.
+static ty_vec3 sample_boundary(const ty_bsdf* b, ty_vec3 wo, float u_share, ty_vec2 u)
+{
+    const float* p = b->lobe_probability;
+    ty_vec3 h = ty_ggx_sample(wo, b->alpha, u), wi;
+    if (u_share < facet_reflects(b, ty_dot(wo, h)) || !(p[TY_LOBE_TRANSMISSION] > 0.0f))
+    {
+        wi = ty_reflect(wo, h);
+        return wi.z > 0.0f ? wi : (ty_vec3){0};
+    }
+    return ty_refract(wo, h, b->eta, &wi) && wi.z < 0.0f ? wi : (ty_vec3){0};
+}
+
+// A direction of a lobe that is no mirror, or z = 0 where the facet sends it nowhere.
+static ty_vec3 sample_lobe(const ty_bsdf* b, ty_vec3 wo, int lobe, float u_rest, ty_vec2 u)
+{
+    switch ((ty_surface_lobe)lobe)
+    {
+    case TY_LOBE_COAT:
+    {
+        ty_vec3 wi = ty_reflect(wo, ty_ggx_sample(wo, ty_ggx_round(b->coat_alpha), u));
+        return wi.z > 0.0f ? wi : (ty_vec3){0};
+    }
+    case TY_LOBE_SPECULAR:
+        return sample_boundary(b, wo, u_rest, u);
+    case TY_LOBE_TRANSMISSION:
+        return sample_boundary(b, wo, b->lobe_probability[TY_LOBE_SPECULAR] + u_rest, u);
+    case TY_LOBE_LOST_ABOVE:
+        return around_normal(ty_loss_row_sample(row_above(b), u.x), u.y);
+    case TY_LOBE_LOST_BELOW:
+        return ty_neg(around_normal(ty_loss_row_sample(&b->far_loss, u.x), u.y));
+    case TY_LOBE_DIFFUSE:
+    case TY_LOBE_COUNT:
+        break;
+    }
+    return ty_sample_cosine(u);
+}
+
+bool ty_surface_sample(const ty_bsdf* b, ty_vec3 wo, float u_lobe, ty_vec2 u, ty_bsdf_sample* out)
+{
+    int lobe = -1;
+    for (int i = 0; i < TY_LOBE_COUNT; i++)
+    {
+        if (b->lobe_probability[i] <= 0.0f)
+            continue;
+        lobe = i;
+        if (u_lobe < b->lobe_probability[i])
+            break;
+        u_lobe -= b->lobe_probability[i];
+    }
+    if (lobe < 0)
+        return false;
+    bool boundary = lobe == TY_LOBE_SPECULAR || lobe == TY_LOBE_TRANSMISSION;
+    if ((lobe == TY_LOBE_COAT && b->coat_alpha == 0.0f) || (boundary && b->alpha.x == 0.0f))
+        return sample_delta(b, wo, lobe, out);
+    *out = (ty_bsdf_sample){.wi = sample_lobe(b, wo, lobe, u_lobe, u)};
+    out->transmitted = out->wi.z < 0.0f;
+    if (out->wi.z == 0.0f)
+        return false;
+    ty_rgb f = ty_surface_eval(b, wo, out->wi, &out->pdf);
+    if (out->pdf <= 0.0f)
+        return false;
+    out->weight = ty_rgb_scale(f, 1.0f / out->pdf);
+    return true;
+}
