@@ -10,16 +10,31 @@ ty_loader* ty_loader_create(const char* folder, const ty_scene_options* options,
     ty_arena* passing = ty_arena_create(0);
     ty_loader* loader = TY_ARENA_ALLOC(passing, ty_loader, 1);
     loader->options = options;
-    loader->errors = errors;
     loader->arena = arena;
-    loader->tree = (ty_tree){.arena = passing, .errors = errors};
-    loader->files = (ty_files){.arena = arena, .errors = errors, .sandbox = options->sandbox};
+    loader->tree = (ty_tree){.arena = passing};
+    loader->files = (ty_files){.arena = arena, .sandbox = options->sandbox};
     loader->files.folder = ty_arena_string(arena, folder);
-    loader->reader = (ty_reader){.arena = arena, .errors = errors, .files = &loader->files, .context = loader};
+    loader->reader = (ty_reader){.arena = arena, .files = &loader->files, .context = loader};
+    ty_loader_report_to(loader, errors);
     loader->scene = TY_ARENA_ALLOC(arena, ty_scene, 1);
     loader->scene->arena = arena;
     loader->scene->resources = TY_ARENA_ALLOC(arena, struct ty_scene_resources, 1);
     return loader;
+}
+
+void ty_loader_keep(ty_loader* loader)
+{
+    loader->kept_options = (ty_scene_options){.trace_path = loader->options->trace_path,
+                                              .isa = loader->options->isa,
+                                              .check_only = loader->options->check_only};
+    loader->options = &loader->kept_options;
+    loader->scene->resources->loader = loader;
+    ty_loader_report_to(loader, NULL);
+}
+
+void ty_loader_report_to(ty_loader* loader, ty_error_list* errors)
+{
+    loader->errors = loader->tree.errors = loader->files.errors = loader->reader.errors = errors;
 }
 
 void ty_loader_destroy(ty_loader* loader)

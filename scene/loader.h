@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of loading one scene or recipe. Everything here ends with loading, except what goes into the ty_scene.
+// The state of loading one scene or recipe. A scene keeps it, because its tree is evaluated again for every frame.
 #pragma once
 #include "document.h"
 #include "params_read.h"
 #include "scene_params.h"
+#include "timeline.h"
 #include <tsuya/generate/asset.h>
 #include <tsuya/geometry/shape.h>
 #include <tsuya/scene/scene.h>
@@ -57,6 +58,8 @@ typedef struct ty_object_entry
     int asset, material;  // -1 = wrong, reported
     const ty_node* slots; // `materials`, NULL = none
     ty_affine transform;
+    ty_object_flags flags;
+    bool flags_known; // found when the world was built first
 } ty_object_entry;
 
 typedef struct ty_texture_entry
@@ -74,11 +77,14 @@ struct ty_scene_resources
     const char** passing; // folders of frames that could not be kept, removed at the end
     int passing_count;
     uint32_t depth_field_count;
+    char* recipe;             // what ty_scene.recipe points to, owned
+    struct ty_loader* loader; // owned; NULL until the scene is complete
 };
 
 typedef struct ty_loader
 {
     const ty_scene_options* options;
+    ty_scene_options kept_options; // without what only the first load asks for
     ty_error_list* errors;
     ty_arena* arena; // of the scene
     ty_tree tree;    // in an arena of its own
@@ -100,12 +106,18 @@ typedef struct ty_loader
     ty_object_entry* objects;
     int* light_textures; // [light_count], -1 = none
     bool is_recipe;      // the root is a recipe, not a scene
+    ty_timeline timeline;
+    ty_node* frame_node; // `frame:` of the file; NULL = the recipe does not tell it
+    ty_seed seed;        // as written in `render`
+    bool world_changed;  // objects stand elsewhere than in the world
 } ty_loader;
 
 // loader.c
 // With an empty scene, which the caller destroys or keeps.
 ty_loader* ty_loader_create(const char* folder, const ty_scene_options* options, ty_error_list* errors);
 void ty_loader_destroy(ty_loader* loader); // not the scene
+void ty_loader_keep(ty_loader* loader);    // with its scene, for other frames
+void ty_loader_report_to(ty_loader* loader, ty_error_list* errors);
 // The tree in loader->root made final: version, overrides, variables, recipe files in place. False when reading the
 // tables makes no sense any more.
 bool ty_loader_resolve(ty_loader* loader);
@@ -134,7 +146,7 @@ char* ty_recipe_text(const ty_recipe* recipe); // a complete recipe file; caller
 // TY_NOT_AT_REST when that is complete but not at rest.
 TY_CHECKED ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* output, ty_workers* workers,
                                      ty_error* error);
-TY_CHECKED ty_status ty_recipe_key(const ty_recipe* recipe, const ty_files* files, char key[33], ty_error* error);
+TY_CHECKED ty_status ty_recipe_key(const ty_recipe* recipe, ty_files* files, char key[33], ty_error* error);
 
 // asset_cache.c: what a recipe makes, made at most once per cache folder, into the asset's aggregate, mesh or frames.
 TY_CHECKED ty_status ty_asset_cache_get(ty_loader* loader, ty_asset* asset, ty_error* error);
@@ -143,9 +155,16 @@ TY_CHECKED ty_status ty_asset_cache_get(ty_loader* loader, ty_asset* asset, ty_e
 void ty_read_assets(ty_loader* loader);
 int ty_asset_find(ty_loader* loader, const ty_node* name); // index; -1 after a report
 void ty_read_materials(ty_loader* loader);
-void ty_read_view(ty_loader* loader); // film, camera, render
+void ty_read_view(ty_loader* loader); // film, camera, render, turntable
 void ty_read_lights(ty_loader* loader);
 void ty_read_objects(ty_loader* loader);
+// One of them again, for the values that its keys have now.
+void ty_read_material(ty_loader* loader, int index);
+void ty_read_camera(ty_loader* loader);
+void ty_read_turntable(ty_loader* loader);
+bool ty_object_turn(const ty_scene* scene, ty_affine* map); // of the turntable; false = none
+void ty_read_light(ty_loader* loader, int index);
+void ty_read_object(ty_loader* loader, int index);
 // Index of a texture by file, space and wrap; the same for equal ones.
 int ty_texture_index(ty_loader* loader, const ty_texture_def* def, ty_place place);
 
@@ -157,3 +176,9 @@ void ty_resolve_slots(ty_loader* loader);
 // scene_world.c: attributes, objects, trees, depth fields, the shading context
 void ty_build_attributes(ty_loader* loader);
 void ty_build_world(ty_loader* loader);
+void ty_rebuild_world(ty_loader* loader); // the same objects, where they stand now
+
+// scene_frame.c
+void ty_frame_begin(ty_loader* loader);      // the sections of time; the tree at the scene's frame
+void ty_frame_check_keys(ty_loader* loader); // reads every keyed entry at every key: ranges hold everywhere then
+void ty_frame_write_recipe(ty_loader* loader);

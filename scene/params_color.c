@@ -121,7 +121,7 @@ static bool read_input_source(ty_reader* reader, ty_node* node, const ty_param* 
         ty_param_report_type(reader, name, &named);
         return false;
     }
-    const char* text = ty_arena_string(reader->arena, name->text);
+    const char* text = name->text;
     if (texture)
     {
         out->texture = text;

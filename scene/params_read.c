@@ -119,7 +119,7 @@ static bool read_string(ty_reader* reader, const ty_node* node, const ty_param* 
 {
     bool good = node->kind == TY_NODE_SCALAR && node->text[0];
     if (good)
-        *out = ty_arena_string(reader->arena, node->text);
+        *out = node->text;
     else
         ty_param_report_type(reader, node, row);
     return good;
@@ -195,6 +195,8 @@ static bool read_keys(ty_reader* reader, ty_node* node, const ty_param_table* ta
 
 bool ty_param_read(ty_reader* reader, ty_node* node, const ty_param* row, void* field)
 {
+    if (node->bad)
+        return false;
     switch (row->type)
     {
     case TY_PARAM_BOOL:

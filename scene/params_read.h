@@ -5,7 +5,8 @@
 #include <tsuya/base/params.h>
 #include <tsuya/image/color.h>
 
-// What reading needs besides the tree. Everything a struct points to afterwards is in arena.
+// What reading needs besides the tree. What a struct points to afterwards is the tree's (texts) or in arena (lists,
+// paths).
 typedef struct ty_reader
 {
     ty_arena* arena;

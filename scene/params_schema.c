@@ -8,6 +8,8 @@
 #include <tsuya/geometry/shape.h>
 
 #define VARIABLE "{\"$ref\": \"#/$defs/variable\"}"
+#define OUTSIDE "{\"enum\": [\"hold\", \"loop\", \"mirror\", \"continue\", \"error\"]}"
+#define KEYED ", {\"$ref\": \"#/$defs/keyed\"}"
 
 static void add_string(ty_text* out, const char* text)
 {
@@ -135,7 +137,24 @@ static void add_type(ty_text* out, const ty_param* row)
     }
 }
 
-static void add_row(ty_text* out, const ty_param* row, const char* further)
+// Whether values of a table may change with time.
+static bool is_keyed(const ty_param_table* table)
+{
+    const ty_param_table* const tables[] = {ty_camera_params(), ty_turntable_params(), ty_light_params(),
+                                            ty_object_params(), ty_surface_params(),   ty_cdrf_params()};
+    for (int i = 0; i < TY_PARAM_COUNT(tables); ++i)
+        if (tables[i] == table)
+            return true;
+    return false;
+}
+
+static bool is_keyed_type(ty_param_type type)
+{
+    return type != TY_PARAM_STRING && type != TY_PARAM_PATH && type != TY_PARAM_ENUM && type != TY_PARAM_INT &&
+           type != TY_PARAM_GROUP && type != TY_PARAM_LIST;
+}
+
+static void add_row(ty_text* out, const ty_param* row, const char* further, bool keyed)
 {
     ty_text range = {0}, about = {0};
     ty_param_range_text(row, &range);
@@ -147,7 +166,7 @@ static void add_row(ty_text* out, const ty_param* row, const char* further)
     add_string(out, about.data);
     ty_text_add(out, ", \"anyOf\": [");
     add_type(out, row);
-    ty_text_format(out, "%s, " VARIABLE "]}", further);
+    ty_text_format(out, "%s%s, " VARIABLE "]}", further, keyed && is_keyed_type(row->type) ? KEYED : "");
     ty_text_term(&range);
     ty_text_term(&about);
 }
@@ -186,7 +205,7 @@ static void add_table(ty_text* out, const ty_param_table* table, const char* ext
         const ty_param* row = &table->params[i];
         ty_text further = {0};
         add_further_type(&further, table, row);
-        add_row(out, row, further.data);
+        add_row(out, row, further.data, is_keyed(table));
         ty_text_term(&further);
         ty_text_add(out, i + 1 < table->count ? ",\n" : "\n");
         if (row->required)
@@ -211,6 +230,11 @@ static void add_definitions(ty_text* out)
     int count = 0;
     const ty_param_table* const* tables = ty_scene_tables(&count);
     ty_text_add(out, "    \"variable\": {\"type\": \"string\", \"pattern\": \"^[$][^$]\"},\n");
+    ty_text_add(out, "    \"keyed\": {\"type\": \"object\", \"description\": \"values at frames\", "
+                     "\"additionalProperties\": false, \"required\": [\"keys\"], \"properties\": {\n"
+                     "      \"keys\": {\"type\": \"object\", \"minProperties\": 1},\n"
+                     "      \"interpolate\": {\"enum\": [\"linear\", \"smooth\", \"ease\", \"hold\"]},\n"
+                     "      \"before\": " OUTSIDE ",\n      \"after\": " OUTSIDE "}},\n");
     for (int i = 0; i < count; ++i)
     {
         const char* kind = generator_kind(tables[i]);
@@ -236,7 +260,9 @@ char* ty_params_schema(void)
                 "    \"overrides\": {\"type\": \"string\"},\n"
                 "    \"ocio\": {\"type\": \"string\"},\n    \"vars\": {\"type\": \"object\"},\n"
                 "    \"film\": {\"$ref\": \"#/$defs/film\"},\n    \"camera\": {\"$ref\": \"#/$defs/camera\"},\n"
-                "    \"render\": {\"$ref\": \"#/$defs/render\"},\n");
+                "    \"render\": {\"$ref\": \"#/$defs/render\"},\n"
+                "    \"timeline\": {\"$ref\": \"#/$defs/timeline\"},\n"
+                "    \"turntable\": {\"$ref\": \"#/$defs/turntable\"},\n    \"frame\": {\"type\": \"number\"},\n");
     ty_text_format(
         &out,
         "    \"assets\": {\"type\": \"object\", \"additionalProperties\": {\"anyOf\": [{\"$ref\": "

@@ -31,6 +31,8 @@ const ty_param_table* const* ty_scene_tables(int* count)
     add(&list, ty_film_params());
     add(&list, ty_camera_params());
     add(&list, ty_render_params());
+    add(&list, ty_timeline_params());
+    add(&list, ty_turntable_params());
     add(&list, ty_light_params());
     add(&list, ty_object_params());
     add(&list, ty_mesh_asset_params());

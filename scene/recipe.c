@@ -131,7 +131,7 @@ char* ty_recipe_text(const ty_recipe* recipe)
     return text;
 }
 
-ty_status ty_recipe_key(const ty_recipe* recipe, const ty_files* files, char key[33], ty_error* error)
+ty_status ty_recipe_key(const ty_recipe* recipe, ty_files* files, char key[33], ty_error* error)
 {
     ty_hasher* hasher = ty_hasher_create();
     char* text = ty_recipe_text(recipe);

@@ -32,8 +32,8 @@ static const char* join(const ty_files* files, const char* base, const char* nam
 const char* ty_files_find(ty_files* files, ty_node* node, const char* what)
 {
     char path[TY_PATH_MAX], described[80];
-    if (node->bad)
-        return NULL;
+    if (node->bad || node->path)
+        return node->path;
     if (node->kind != TY_NODE_SCALAR || node->text[0] == 0)
     {
         ty_report(files->errors, node->place, TY_BAD_INPUT, "%s: expected the name of a file, got %s", what,
@@ -68,14 +68,15 @@ const char* ty_files_find(ty_files* files, ty_node* node, const char* what)
     if (!found)
         return NULL;
     node->text = found;
-    return ty_arena_string(files->arena, path);
+    return node->path = ty_arena_string(files->arena, path);
 }
 
 const char* ty_files_use(ty_files* files, ty_node* node, const char* what)
 {
+    bool known = node->path != NULL;
     const char* path = ty_files_find(files, node, what);
-    if (!path)
-        return NULL;
+    if (!path || known)
+        return path;
     if (files->count == files->capacity)
     {
         int capacity = files->capacity ? 2 * files->capacity : 16;
@@ -85,11 +86,11 @@ const char* ty_files_use(ty_files* files, ty_node* node, const char* what)
         files->entries = entries;
         files->capacity = capacity;
     }
-    files->entries[files->count++] = (ty_file_entry){ty_arena_string(files->arena, node->text), path};
+    files->entries[files->count++] = (ty_file_entry){.text = ty_arena_string(files->arena, node->text), .path = path};
     return path;
 }
 
-static ty_status add_file(const char* path, ty_hasher* hasher, ty_error* error)
+static ty_status hash_file(const char* path, ty_hash* out, ty_error* error)
 {
     FILE* file = fopen(path, "rb");
     if (!file)
@@ -102,19 +103,21 @@ static ty_status add_file(const char* path, ty_hasher* hasher, ty_error* error)
     int failed = ferror(file) ? (errno ? errno : EIO) : 0;
     ty_free(buffer);
     fclose(file);
-    ty_hash hash = ty_hasher_end(content);
-    ty_hasher_add(hasher, &hash, sizeof(hash));
+    *out = ty_hasher_end(content);
     return failed ? ty_error_set(error, TY_BAD_FILE, "cannot read '%s': %s", path, strerror(failed)) : TY_OK;
 }
 
-ty_status ty_files_add_to_hash(const ty_files* files, int begin, int end, ty_hasher* hasher, ty_error* error)
+ty_status ty_files_add_to_hash(ty_files* files, int begin, int end, ty_hasher* hasher, ty_error* error)
 {
     for (int i = begin; i < end; ++i)
     {
-        ty_hasher_add_string(hasher, files->entries[i].text);
-        ty_status status = add_file(files->entries[i].path, hasher, error);
+        ty_file_entry* entry = &files->entries[i];
+        ty_status status = entry->hashed ? TY_OK : hash_file(entry->path, &entry->content, error);
         if (status != TY_OK)
             return status;
+        entry->hashed = true;
+        ty_hasher_add_string(hasher, entry->text);
+        ty_hasher_add(hasher, &entry->content, sizeof(entry->content));
     }
     return TY_OK;
 }

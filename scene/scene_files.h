@@ -9,6 +9,8 @@ typedef struct ty_file_entry
 {
     const char* text; // relative to the scene's folder, or absolute
     const char* path; // to open
+    ty_hash content;
+    bool hashed; // content is known: a file is read once, however many frames there are
 } ty_file_entry;
 
 typedef struct ty_files
@@ -24,11 +26,10 @@ typedef struct ty_files
 } ty_files;
 
 // The path to open of the file that node names: tried beside the file that says it, then in the search folders. The
-// node's text becomes relative to the scene's folder: call it once for a node. Missing, no regular file, outside a
-// sandbox: reported, NULL.
+// node's text becomes relative to the scene's folder; asked again, the node gives the same. Missing, no regular file,
+// outside a sandbox: reported, NULL.
 const char* ty_files_find(ty_files* files, ty_node* node, const char* what);
 // The same, and the file's content belongs to the scene (see ty_files_add_to_hash).
 const char* ty_files_use(ty_files* files, ty_node* node, const char* what);
 // Adds names and contents of entries [begin, end) in order.
-TY_CHECKED ty_status ty_files_add_to_hash(const ty_files* files, int begin, int end, ty_hasher* hasher,
-                                          ty_error* error);
+TY_CHECKED ty_status ty_files_add_to_hash(ty_files* files, int begin, int end, ty_hasher* hasher, ty_error* error);

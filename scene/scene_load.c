@@ -8,8 +8,9 @@
 
 static void check_sections(ty_loader* loader)
 {
-    static const char* const keys[] = {"film", "camera", "render",  "assets", "materials", "objects",   "lights",
-                                       "ocio", "tsuya",  "include", "vars",   "search",    "overrides", NULL};
+    static const char* const keys[] = {"film",      "camera",   "render",    "assets",  "materials", "objects",
+                                       "lights",    "ocio",     "tsuya",     "include", "vars",      "search",
+                                       "overrides", "timeline", "turntable", "frame",   NULL};
     (void)ty_params_check_keys(&loader->reader, loader->root, keys, "a scene"); // reported
 }
 
@@ -53,9 +54,11 @@ static void record_overrides(ty_loader* loader)
 // The text that makes the same scene again, after everything was read: paths are relative to the scene's folder now.
 static void write_recipe(ty_loader* loader)
 {
-    record_overrides(loader);
+    ty_timeline_show_keys(&loader->timeline, true);
     char* body = ty_node_is_empty(loader->root) ? ty_string_copy("") : ty_tree_emit(loader->root);
-    loader->scene->recipe = ty_arena_format(loader->arena, "tsuya: 1\n%s", body);
+    ty_timeline_show_keys(&loader->timeline, false);
+    ty_free(loader->scene->resources->recipe);
+    loader->scene->recipe = loader->scene->resources->recipe = ty_string_format("tsuya: 1\n%s", body);
     ty_free(body);
 }
 
@@ -73,12 +76,20 @@ static void hash_scene(ty_loader* loader)
     ty_hash_hex(ty_hasher_end(hasher), loader->scene->hash);
 }
 
+void ty_frame_write_recipe(ty_loader* loader)
+{
+    write_recipe(loader);
+    hash_scene(loader);
+}
+
 // Each stage needs the one before without a mistake; a check goes on to the files to find those mistakes as well.
 static void load_stages(ty_loader* loader, int first)
 {
     if (!ty_loader_resolve(loader))
         return;
+    ty_frame_begin(loader);
     read_sections(loader);
+    ty_frame_check_keys(loader);
     bool good = loader->errors->count == first;
     if (!loader->scene->color || (!good && !loader->options->check_only))
         return;
@@ -88,8 +99,8 @@ static void load_stages(ty_loader* loader, int first)
     ty_build_attributes(loader);
     if (loader->errors->count > first)
         return;
-    write_recipe(loader);
-    hash_scene(loader);
+    record_overrides(loader);
+    ty_frame_write_recipe(loader);
     if (loader->errors->count == first && !loader->options->check_only)
         ty_build_world(loader);
 }
@@ -103,11 +114,14 @@ static ty_status finish(ty_loader* loader, const char* path, double start, int f
     scene->load_seconds = ty_time_now() - start;
     bool good = loader->root && loader->errors->count == first;
     ty_status status = good ? TY_OK : ty_loader_status(loader->errors, first);
-    ty_loader_destroy(loader);
     if (good)
+    {
+        ty_loader_keep(loader);
         *out = scene;
-    else
-        ty_scene_destroy(scene);
+        return status;
+    }
+    ty_loader_destroy(loader);
+    ty_scene_destroy(scene);
     return status;
 }
 
@@ -164,5 +178,8 @@ void ty_scene_destroy(ty_scene* scene)
         ty_folder_remove(parent);
     }
     ty_color_destroy(scene->color);
+    ty_free(scene->resources->recipe);
+    if (scene->resources->loader)
+        ty_loader_destroy(scene->resources->loader);
     ty_arena_destroy(scene->arena);
 }

@@ -58,6 +58,9 @@ static int find_attribute(void* context, const ty_node* name)
             scene->attribute_names = TY_ARENA_ALLOC(loader->arena, const char*, 256);
         scene->attribute_names[scene->attribute_count++] = ty_arena_string(loader->arena, name->text);
     }
+    for (int i = 0; i < loader->use_count; ++i) // read again for another frame
+        if (loader->uses[i].material == loader->current_material && loader->uses[i].attribute == index)
+            return index;
     loader->uses = ty_loader_grow(loader->tree.arena, loader->uses, loader->use_count, &loader->use_capacity,
                                   sizeof(*loader->uses));
     loader->uses[loader->use_count++] = (ty_attribute_use){loader->current_material, index, name->place};
@@ -121,6 +124,14 @@ static void read_material(ty_loader* loader, ty_node* node, int index)
         (chosen == 0 ? read_surface : read_cdrf)(loader, node, index);
 }
 
+void ty_read_material(ty_loader* loader, int index)
+{
+    loader->current_material = index;
+    ty_material_destroy(loader->scene->materials[index]);
+    loader->scene->materials[index] = NULL;
+    read_material(loader, loader->material_map->items[index], index);
+}
+
 void ty_read_materials(ty_loader* loader)
 {
     ty_scene* scene = loader->scene;
@@ -134,7 +145,6 @@ void ty_read_materials(ty_loader* loader)
     for (int i = 0; i < scene->material_count; ++i)
     {
         scene->material_names[i] = ty_arena_string(loader->arena, map->keys[i].text);
-        loader->current_material = i;
-        read_material(loader, map->items[i], i);
+        ty_read_material(loader, i);
     }
 }

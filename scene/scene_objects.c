@@ -86,12 +86,35 @@ static void find_materials(ty_loader* loader, const ty_node* node, ty_object_ent
 static void place_object(ty_loader* loader, const ty_node* node, ty_object_entry* entry)
 {
     const ty_object_def* def = &entry->def;
+    ty_affine turn, inverse, before = entry->transform;
     entry->transform = ty_affine_from_trs(def->translate, ty_quat_euler(def->rotate), def->scale);
-    ty_affine inverse;
+    if (ty_object_turn(loader->scene, &turn))
+        entry->transform = ty_affine_multiply(&turn, &entry->transform);
+    loader->world_changed |= memcmp(&before, &entry->transform, sizeof before) != 0;
     const ty_node* scale = ty_node_get(node, "scale");
     if (!ty_affine_invert(&entry->transform, &inverse))
         ty_report(loader->errors, scale ? scale->place : node->place, TY_BAD_INPUT,
                   "'scale': zero along an axis would make the object flat");
+}
+
+void ty_read_object(ty_loader* loader, int index)
+{
+    ty_scene_object* object = &loader->scene->objects[index];
+    ty_object_entry* entry = &loader->objects[index];
+    ty_node* node = ty_section(loader, "objects", TY_NODE_LIST)->items[index];
+    entry->place = node->place;
+    entry->asset = entry->material = -1;
+    spread_scale(loader, node);
+    bool good = ty_params_read(&loader->reader, node, ty_object_params(), &entry->def, NULL);
+    if (node->kind != TY_NODE_MAP || node->bad)
+        return;
+    find_asset(loader, node, entry);
+    find_materials(loader, node, entry);
+    if (good)
+        place_object(loader, node, entry);
+    if (!object->name)
+        object->name = entry->def.name ? entry->def.name : ty_arena_format(loader->arena, "object%d", index);
+    object->material = (uint32_t)entry->material;
 }
 
 void ty_read_objects(ty_loader* loader)
@@ -102,20 +125,5 @@ void ty_read_objects(ty_loader* loader)
     scene->objects = TY_ARENA_ALLOC(loader->arena, ty_scene_object, scene->object_count);
     loader->objects = TY_ARENA_ALLOC(loader->tree.arena, ty_object_entry, scene->object_count);
     for (int i = 0; i < scene->object_count; ++i)
-    {
-        ty_object_entry* entry = &loader->objects[i];
-        ty_node* node = list->items[i];
-        entry->place = node->place;
-        entry->asset = entry->material = -1;
-        spread_scale(loader, node);
-        bool good = ty_params_read(&loader->reader, node, ty_object_params(), &entry->def, NULL);
-        if (node->kind != TY_NODE_MAP || node->bad)
-            continue;
-        find_asset(loader, node, entry);
-        find_materials(loader, node, entry);
-        if (good)
-            place_object(loader, node, entry);
-        scene->objects[i].name = entry->def.name ? entry->def.name : ty_arena_format(loader->arena, "object%d", i);
-        scene->objects[i].material = (uint32_t)entry->material;
-    }
+        ty_read_object(loader, i);
 }

@@ -28,6 +28,16 @@ ty_render_def ty_render_def_default(void)
                            .curvature_scale = 0.001f};
 }
 
+ty_timeline_def ty_timeline_def_default(void)
+{
+    return (ty_timeline_def){.fps = 24.0f, .start = 1, .end = 24};
+}
+
+ty_turntable_def ty_turntable_def_default(void)
+{
+    return (ty_turntable_def){.turn = TY_TURN_CAMERA, .axis = {0.0f, 1.0f, 0.0f}};
+}
+
 static void film_default(void* def)
 {
     *(ty_film_def*)def = ty_film_def_default();
@@ -43,8 +53,20 @@ static void render_default(void* def)
     *(ty_render_def*)def = ty_render_def_default();
 }
 
+static void timeline_default(void* def)
+{
+    *(ty_timeline_def*)def = ty_timeline_def_default();
+}
+
+static void turntable_default(void* def)
+{
+    *(ty_turntable_def*)def = ty_turntable_def_default();
+}
+
 static const char* const filters[] = {"box", "gaussian", "blackman_harris", NULL};
 static const char* const integrators[] = {"path", "albedo", "normal", "curvature", "ao", NULL};
+
+static const char* const turns[] = {"camera", "objects", NULL};
 
 static const ty_param film_rows[] = {
     {"size", TY_PARAM_INT2, "px", 1, 32768, NULL, NULL, offsetof(ty_film_def, size), "width and height", false},
@@ -85,10 +107,32 @@ static const ty_param render_rows[] = {
     {"roulette_depth", TY_PARAM_INT, "", 1, 4096, NULL, NULL, offsetof(ty_render_def, roulette_depth),
      "no Russian roulette before this many interactions", false},
     {"seed", TY_PARAM_SEED, "", 0, 0, NULL, NULL, offsetof(ty_render_def, seed), "of the sampler", false},
+    {"animate_seed", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_render_def, animate_seed),
+     "other noise in every frame, so that it does not stand still; a loop's first frame then differs from its next",
+     false},
     {"ao_distance", TY_PARAM_FLOAT, "m", 0, MANY, NULL, NULL, offsetof(ty_render_def, ao_distance),
      "reach of ambient occlusion", false},
     {"curvature_scale", TY_PARAM_FLOAT, "m", 0, MANY, NULL, NULL, offsetof(ty_render_def, curvature_scale),
      "mean curvature times this is shown as grey around .5", false},
+};
+
+static const ty_param timeline_rows[] = {
+    {"fps", TY_PARAM_FLOAT, "1/s", 0.001, 10000, NULL, NULL, offsetof(ty_timeline_def, fps), "frames a second", false},
+    {"start", TY_PARAM_INT, "", -1e7, 1e7, NULL, NULL, offsetof(ty_timeline_def, start),
+     "first frame: second 0 of textures and meshes", false},
+    {"end", TY_PARAM_INT, "", -1e7, 1e7, NULL, NULL, offsetof(ty_timeline_def, end),
+     "last frame; a loop is best keyed to end + 1", false},
+};
+
+static const ty_param turntable_rows[] = {
+    {"turn", TY_PARAM_ENUM, "", 0, 0, turns, NULL, offsetof(ty_turntable_def, turn),
+     "the camera goes round, or all objects turn under camera and lights that stay", false},
+    {"angle", TY_PARAM_FLOAT, "deg", -36000, 36000, NULL, NULL, offsetof(ty_turntable_def, angle),
+     "counter-clockwise seen against the axis; to be keyed", false},
+    {"axis", TY_PARAM_FLOAT3, "", -1e9, 1e9, NULL, NULL, offsetof(ty_turntable_def, axis), "direction of the axis",
+     false},
+    {"about", TY_PARAM_FLOAT3, "m", -1e9, 1e9, NULL, NULL, offsetof(ty_turntable_def, about),
+     "a point on the axis; the camera's look_at if not given", false},
 };
 
 static const ty_param_table film_table = {"film",
@@ -120,4 +164,28 @@ const ty_param_table* ty_camera_params(void)
 const ty_param_table* ty_render_params(void)
 {
     return &render_table;
+}
+
+static const ty_param_table timeline_table = {"timeline",
+                                              "Frames and seconds. Any number, list of numbers or colour of camera, "
+                                              "turntable, materials, lights and objects may be keyed.",
+                                              sizeof(ty_timeline_def),
+                                              timeline_default,
+                                              timeline_rows,
+                                              TY_PARAM_COUNT(timeline_rows)};
+static const ty_param_table turntable_table = {"turntable",
+                                               "A turn of the camera round the scene, or of the objects.",
+                                               sizeof(ty_turntable_def),
+                                               turntable_default,
+                                               turntable_rows,
+                                               TY_PARAM_COUNT(turntable_rows)};
+
+const ty_param_table* ty_timeline_params(void)
+{
+    return &timeline_table;
+}
+
+const ty_param_table* ty_turntable_params(void)
+{
+    return &turntable_table;
 }

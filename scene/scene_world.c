@@ -111,6 +111,7 @@ static void warn_untextured(const ty_loader* loader, const ty_scene_object* obje
                    name, loader->scene->material_names[ty_scene_material_at(object, k)]);
 }
 
+// Looked at once: neither meshes nor materials change their kind from frame to frame.
 static ty_object_flags object_flags(const ty_loader* loader, const ty_scene_object* object, const ty_asset* asset)
 {
     ty_object_flags flags = {.mask = TY_MASK_OPAQUE};
@@ -128,22 +129,24 @@ static ty_object_flags object_flags(const ty_loader* loader, const ty_scene_obje
 static ty_status add_object(ty_loader* loader, int index, ty_error* error)
 {
     ty_scene* scene = loader->scene;
-    const ty_object_entry* entry = &loader->objects[index];
+    ty_object_entry* entry = &loader->objects[index];
     const ty_asset* asset = &loader->assets[entry->asset];
-    ty_object_flags flags = object_flags(loader, &scene->objects[index], asset);
+    if (!entry->flags_known)
+        entry->flags = object_flags(loader, &scene->objects[index], asset);
+    entry->flags_known = true;
     uint32_t number = 0, prototype = 0;
     ty_status status = TY_OK;
     if (asset->aggregate)
     {
-        status = ty_world_add_aggregate(scene->world, asset->aggregate, ty_motion_at_rest(&entry->transform), flags,
-                                        &number, error);
+        status = ty_world_add_aggregate(scene->world, asset->aggregate, ty_motion_at_rest(&entry->transform),
+                                        entry->flags, &number, error);
     }
     else
     {
         status = ty_world_add_prototype(scene->world, asset->mesh, &prototype, error);
         if (status == TY_OK)
-            status = ty_world_add_object(scene->world, prototype, ty_motion_at_rest(&entry->transform), flags, &number,
-                                         error);
+            status = ty_world_add_object(scene->world, prototype, ty_motion_at_rest(&entry->transform), entry->flags,
+                                         &number, error);
     }
     TY_ASSERT(status != TY_OK || number == (uint32_t)index);
     return status;
@@ -219,6 +222,25 @@ static void set_shading(ty_loader* loader)
                                           .vertex_attributes = vertex_attributes(loader)};
 }
 
+// All objects into a world without any, and its tree; false after reports.
+static bool fill_world(ty_loader* loader)
+{
+    ty_scene* scene = loader->scene;
+    ty_error error = {0};
+    for (int i = 0; i < scene->object_count; ++i)
+    {
+        if (add_object(loader, i, &error) == TY_OK)
+            continue;
+        ty_report_error(loader->errors, loader->objects[i].place, scene->objects[i].name, &error);
+        return false;
+    }
+    loader->world_changed = false;
+    if (ty_world_commit(scene->world, &error) == TY_OK)
+        return true;
+    ty_error_list_add(loader->errors, &error);
+    return false;
+}
+
 void ty_build_world(ty_loader* loader)
 {
     ty_scene* scene = loader->scene;
@@ -228,18 +250,12 @@ void ty_build_world(ty_loader* loader)
     def.path = loader->options->trace_path;
     def.isa = loader->options->isa;
     ty_status status = ty_world_create(&def, &scene->world, &error);
-    for (int i = 0; i < scene->object_count && status == TY_OK; ++i)
+    if (status == TY_OK)
     {
-        status = add_object(loader, i, &error);
-        if (status != TY_OK)
-            ty_report_error(loader->errors, loader->objects[i].place, scene->objects[i].name, &error);
-    }
-    if (status != TY_OK && scene->world)
-        return;
-    if (status == TY_OK)
-        status = ty_world_commit(scene->world, &error);
-    if (status == TY_OK)
+        if (!fill_world(loader))
+            return;
         status = make_depth_fields(loader, &error);
+    }
     if (status != TY_OK)
     {
         ty_error_list_add(loader->errors, &error);
@@ -247,4 +263,10 @@ void ty_build_world(ty_loader* loader)
     }
     set_shading(loader);
     scene->build_seconds = ty_time_now() - start;
+}
+
+void ty_rebuild_world(ty_loader* loader)
+{
+    ty_world_clear_objects(loader->scene->world);
+    (void)fill_world(loader); // what is wrong is in the list of errors
 }

@@ -48,6 +48,7 @@ struct ty_node
     bool bad; // reported already: whoever meets it says nothing more
     ty_place place;
     const char* text; // SCALAR; "" where nothing is written
+    const char* path; // to open, once a name of a file was found; NULL before
     ty_node** items;  // LIST, MAP
     ty_key* keys;     // MAP
     int count, capacity;

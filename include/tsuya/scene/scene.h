@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What exists: a scene read from YAML, frozen after load.
+// What exists: a scene read from YAML, frozen between one frame and the next.
 #pragma once
 #include <tsuya/base/arena.h>
 #include <tsuya/base/params.h>
@@ -47,14 +47,37 @@ typedef enum ty_integrator_kind
 
 typedef struct ty_render_def
 {
-    int integrator;     // ty_integrator_kind
-    int samples;        // per pixel
-    int max_depth;      // surface interactions of a path
-    int roulette_depth; // no Russian roulette before this many interactions
-    ty_seed seed;
+    int integrator;        // ty_integrator_kind
+    int samples;           // per pixel
+    int max_depth;         // surface interactions of a path
+    int roulette_depth;    // no Russian roulette before this many interactions
+    ty_seed seed;          // of this frame, with animate_seed
+    bool animate_seed;     // other noise in every frame
     float ao_distance;     // m
     float curvature_scale; // m: curvature * scale is shown as grey around .5
 } ty_render_def;
+
+// Frames are numbers; those between whole ones exist. Frame `start` is second 0.
+typedef struct ty_timeline_def
+{
+    float fps;
+    int start, end; // the frames that `--frames all` means
+} ty_timeline_def;
+
+typedef enum ty_turntable_kind
+{
+    TY_TURN_CAMERA,  // the camera goes round what stands still
+    TY_TURN_OBJECTS, // all objects turn; camera and lights stay
+} ty_turntable_kind;
+
+typedef struct ty_turntable_def
+{
+    int turn;      // ty_turntable_kind
+    float angle;   // radians about axis, counter-clockwise seen against it
+    ty_vec3 axis;  // not zero
+    ty_vec3 about; // m, a point on the axis, used when has_about; else the camera's look_at
+    bool has_about;
+} ty_turntable_def;
 
 typedef enum ty_light_kind
 {
@@ -86,10 +109,14 @@ ty_film_def ty_film_def_default(void);
 ty_camera_def ty_camera_def_default(void);
 ty_render_def ty_render_def_default(void);
 ty_light_def ty_light_def_default(void);
+ty_timeline_def ty_timeline_def_default(void);
+ty_turntable_def ty_turntable_def_default(void);
 const ty_param_table* ty_film_params(void);
 const ty_param_table* ty_camera_params(void);
 const ty_param_table* ty_render_params(void);
 const ty_param_table* ty_light_params(void);
+const ty_param_table* ty_timeline_params(void);
+const ty_param_table* ty_turntable_params(void);
 
 typedef struct ty_scene_object
 {
@@ -102,14 +129,26 @@ typedef struct ty_scene_object
     uint32_t instance_count;
 } ty_scene_object;
 
+// How often something was made or read again for another frame, since the scene was loaded.
+typedef struct ty_scene_rebuilds
+{
+    int frames; // ty_scene_set_frame
+    int cameras, materials, lights, objects;
+    int worlds; // top-level trees; those of prototypes stay
+} ty_scene_rebuilds;
+
 // Frozen: const for the renderer. Owned by its arena and ty_scene_destroy.
 typedef struct ty_scene
 {
     ty_arena* arena;
     const char* path; // of the scene file
     ty_film_def film;
-    ty_camera_def camera;
+    ty_camera_def camera; // of this frame, turned by the turntable
     ty_render_def render;
+    ty_timeline_def timeline;
+    ty_turntable_def turntable;
+    double frame, seconds; // of this frame; seconds since timeline.start
+    ty_scene_rebuilds rebuilds;
     ty_color* color;
     ty_world* world;
     ty_scene_object* objects; // by world object index
@@ -126,9 +165,9 @@ typedef struct ty_scene
     int attribute_count;
     ty_depth_field** depth_fields; // by prototype
     ty_shading_context shading;    // ready for use
-    const char* recipe;            // complete text of the scene: variables, overrides, includes and recipes resolved
-    const char* overrides;         // "-D a=b --set c=d", as given; "" if none
-    char hash[33];                 // of the recipe and of every file that went in
+    const char* recipe; // complete text of the scene at this frame: variables, overrides, includes and recipes resolved
+    const char* overrides;                // "-D a=b --set c=d", as given; "" if none
+    char hash[33];                        // of the recipe and of every file that went in
     struct ty_scene_resources* resources; // private: meshes and aggregates
     // statistics of loading, seconds and counts
     double load_seconds, asset_seconds, build_seconds;
@@ -159,6 +198,11 @@ TY_CHECKED ty_status ty_scene_load(const char* path, const ty_scene_options* opt
 TY_CHECKED ty_status ty_scene_load_memory(const char* name, const void* bytes, size_t size,
                                           const ty_scene_options* options, ty_scene** out, ty_error_list* errors);
 void ty_scene_destroy(ty_scene* scene); // NULL is allowed
+
+// The scene as it is at another frame: keyed values are read again and what depends on them is rebuilt; assets never
+// are. Recipe and hash become those of the frame. Not while somebody renders it. On failure the scene can be given
+// another frame or destroyed, nothing else.
+TY_CHECKED ty_status ty_scene_set_frame(ty_scene* scene, double frame, ty_error_list* errors);
 
 // The material of a triangle of an object's instance.
 static inline const ty_material* ty_scene_material(const ty_scene* scene, uint32_t object, uint32_t instance,

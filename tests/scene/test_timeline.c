@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keyed values: what a scene is at a frame, which mistakes are told, and how little is made again.
+#include "scene/fixture.h"
+
+#define HEAD                                                                                                           \
+    "tsuya: 1\n"                                                                                                       \
+    "timeline: { fps: 25, start: 1, end: 24 }\n"
+#define BODY                                                                                                           \
+    "assets:\n"                                                                                                        \
+    "  ball: { shape: sphere, divisions: 8, radius: 0.01 }\n"                                                          \
+    "materials:\n"                                                                                                     \
+    "  grey: { model: surface, base_color: 0.5 }\n"                                                                    \
+    "objects:\n"                                                                                                       \
+    "  - { mesh: ball, material: grey }\n"
+
+static void load(const char* text, bool whole)
+{
+    ty_scene_options options = {.check_only = !whole};
+    fixture_write("scene.yaml", text);
+    ty_status status = fixture_load(&options);
+    if (status != TY_OK)
+        fixture_print_errors();
+    assert_int_equal(status, TY_OK);
+}
+
+static void set_frame(double frame)
+{
+    ty_status status = ty_scene_set_frame(fixture_scene, frame, &fixture_errors);
+    if (status != TY_OK)
+        fixture_print_errors();
+    assert_int_equal(status, TY_OK);
+}
+
+static float vfov_at(double frame)
+{
+    set_frame(frame);
+    return fixture_scene->camera.vfov * 180.0f / TY_PI;
+}
+
+static void load_vfov(const char* keyed)
+{
+    char* text = ty_string_format(HEAD "camera: { vfov: %s }\n" BODY, keyed);
+    load(text, false);
+    ty_free(text);
+}
+
+static void keys_are_met_and_joined(void** state)
+{
+    (void)state;
+    load_vfov("{ keys: { 11: 30, 1: 10, 21: 20 } }");
+    fixture_near(vfov_at(1), 10.0f, 1e-5f);
+    fixture_near(vfov_at(3.5), 15.0f, 1e-5f);
+    fixture_near(vfov_at(11), 30.0f, 1e-5f);
+    fixture_near(vfov_at(16), 25.0f, 1e-5f);
+    fixture_near(vfov_at(-5), 10.0f, 1e-5f);
+    fixture_near(vfov_at(99), 20.0f, 1e-5f);
+    load_vfov("{ keys: { 1: 10, 11: 30 }, interpolate: hold }");
+    fixture_near(vfov_at(10.999), 10.0f, 1e-5f);
+    fixture_near(vfov_at(11), 30.0f, 1e-5f);
+    load_vfov("{ keys: { 1: 10, 11: 30 }, interpolate: ease }"); // 3 s^2 - 2 s^3
+    fixture_near(vfov_at(3.5), 10.0f + 20.0f * 0.15625f, 1e-5f);
+    fixture_near(vfov_at(6), 20.0f, 1e-5f);
+}
+
+// Steffen's curve through a straight line is the line; through a plateau it does not overshoot; at its keys it has one
+// slope.
+static void smooth_is_monotone(void** state)
+{
+    (void)state;
+    load_vfov("{ keys: { 1: 10, 5: 14, 7: 16, 21: 30 }, interpolate: smooth }");
+    for (int i = 0; i <= 80; ++i)
+        fixture_near(vfov_at(1.0 + 0.25 * i), 10.0f + 0.25f * (float)i, 1e-4f);
+    load_vfov("{ keys: { 1: 10, 5: 12, 6: 40, 9: 40, 21: 41 }, interpolate: smooth }");
+    float last = 10.0f;
+    for (int i = 1; i <= 200; ++i)
+    {
+        float value = vfov_at(1.0 + 0.1 * i);
+        assert_true(value >= last - 1e-5f && value <= 41.0f + 1e-5f);
+        last = value;
+    }
+    // h0 = 4, h1 = 1, s0 = .5, s1 = 28: p = (.5 * 1 + 28 * 4) / 5 = 22.5, limited to 2 * .5
+    float left = (vfov_at(5) - vfov_at(4.999)) / 0.001f, right = (vfov_at(5.001) - vfov_at(5)) / 0.001f;
+    fixture_near(left, 1.0f, 0.12f);
+    fixture_near(right, 1.0f, 0.12f);
+}
+
+static void outside_the_keys(void** state)
+{
+    (void)state;
+    load_vfov("{ keys: { 1: 10, 5: 30, 9: 50 }, after: loop }");
+    uint32_t first, again;
+    for (int i = 0; i < 40; ++i)
+    {
+        double frame = 1.0 + 0.2 * i;
+        float a = vfov_at(frame), b = vfov_at(frame + 8.0), c = vfov_at(frame - 16.0);
+        fixture_near(b, a, 1e-4f);
+        fixture_near(c, a, 1e-4f);
+    }
+    float value = vfov_at(1);
+    memcpy(&first, &value, sizeof first);
+    value = vfov_at(9);
+    memcpy(&again, &value, sizeof again);
+    assert_int_equal(first, again); // the last key's moment is the first's
+    load_vfov("{ keys: { 1: 10, 5: 30 }, after: mirror }");
+    fixture_near(vfov_at(6), 25.0f, 1e-4f);
+    fixture_near(vfov_at(9), 10.0f, 1e-4f);
+    fixture_near(vfov_at(10), 15.0f, 1e-4f);
+    fixture_near(vfov_at(0), 15.0f, 1e-4f);
+    load_vfov("{ keys: { 1: 10, 5: 30 }, after: continue, before: hold }");
+    fixture_near(vfov_at(9), 50.0f, 1e-4f);
+    fixture_near(vfov_at(-9), 10.0f, 1e-4f);
+}
+
+static void every_kind_of_value(void** state)
+{
+    (void)state;
+    load(HEAD
+         "vars: { wet: { keys: { 1: 0.2, 11: 0.6 } } }\n"
+         "camera: { position: { keys: { 1: [0, 0, 1], 11: [2, 4, 1] } }, look_at: [0, { keys: { 1: 0, 11: 1 } }, 0] }\n"
+         "lights:\n"
+         "  - { type: environment, radiance: { keys: { 1: '#ffffff', 11: [3, 0, 0] } }, camera_visible: { keys: { 1: "
+         "true, 6: false } } }\n"
+         "  - { type: sphere, radiance: { color: { keys: { 1: 1, 11: 2 } }, space: lin_rec709 } }\n"
+         "assets: { ball: { shape: sphere, divisions: 8 } }\n"
+         "materials: { keys: { model: cdrf, moisture: $wet } }\n" // a name like any other
+         "objects: [{ mesh: ball, material: keys, scale: { keys: { 1: 1, 11: 3 } } }]\n",
+         false);
+    const ty_scene* scene = fixture_scene;
+    set_frame(6);
+    fixture_near(scene->camera.position.x, 1.0f, 1e-6f);
+    fixture_near(scene->camera.position.y, 2.0f, 1e-6f);
+    fixture_near(scene->camera.look_at.y, 0.5f, 1e-6f);
+    fixture_near(scene->lights[0].radiance.r, 2.0f, 1e-4f);
+    fixture_near(scene->lights[0].radiance.g, 0.5f, 1e-4f);
+    assert_false(scene->lights[0].camera_visible);
+    fixture_near(scene->lights[1].radiance.r, 1.5f, 1e-3f);
+    assert_true(scene->seconds == 5.0 / 25.0);
+    set_frame(5);
+    assert_true(scene->lights[0].camera_visible);
+}
+
+// What a keyed scene is at a frame is, bit for bit, what a scene with those numbers is.
+static void a_key_is_the_number(void** state)
+{
+    (void)state;
+    load("tsuya: 1\ncamera: { position: [0.1, 0.7, 1.3], vfov: 33.3 }\n" BODY, false);
+    ty_camera_def plain = fixture_scene->camera;
+    load("tsuya: 1\ncamera: { position: { keys: { 3: [0.1, 0.7, 1.3], 9: [1, 1, 1] } }, vfov: { keys: { 0: 1, 3: "
+         "33.3 } } }\n" BODY,
+         false);
+    set_frame(3);
+    assert_memory_equal(&plain.position, &fixture_scene->camera.position, sizeof plain.position);
+    assert_true(plain.vfov == fixture_scene->camera.vfov);
+}
+
+static void only_what_changes_is_made_again(void** state)
+{
+    (void)state;
+    load(HEAD "camera: { position: { keys: { 1: [0, 0, 1], 4: [0, 0.3, 1] } } }\n"
+              "assets: { ball: { shape: sphere, divisions: 8 }, box: { shape: box } }\n"
+              "materials:\n"
+              "  a: { model: surface, base_color: { keys: { 1: 0.1, 3: 0.9 } } }\n"
+              "  b: { model: surface }\n"
+              "lights:\n"
+              "  - { type: point, intensity: { keys: { 1: 1, 2: 2 } } }\n"
+              "  - { type: point }\n"
+              "objects:\n"
+              "  - { mesh: ball, material: a, translate: { keys: { 2: [0, 0, 0], 3: [1, 0, 0] } } }\n"
+              "  - { mesh: box, material: b }\n",
+         true);
+    const ty_scene* scene = fixture_scene;
+    const ty_material* other = scene->materials[1];
+    assert_int_equal(scene->rebuilds.frames, 0);
+    set_frame(1);
+    assert_int_equal(scene->rebuilds.cameras + scene->rebuilds.materials + scene->rebuilds.lights +
+                         scene->rebuilds.objects + scene->rebuilds.worlds,
+                     0);
+    set_frame(2);
+    assert_int_equal(scene->rebuilds.cameras, 1);
+    assert_int_equal(scene->rebuilds.materials, 1);
+    assert_int_equal(scene->rebuilds.lights, 1);
+    assert_int_equal(scene->rebuilds.objects, 0);
+    set_frame(3);
+    set_frame(4);
+    set_frame(5);
+    assert_int_equal(scene->rebuilds.frames, 5);
+    assert_int_equal(scene->rebuilds.cameras, 3);
+    assert_int_equal(scene->rebuilds.materials, 2);
+    assert_int_equal(scene->rebuilds.lights, 1);
+    assert_int_equal(scene->rebuilds.objects, 1);
+    assert_int_equal(scene->rebuilds.worlds, 1);
+    assert_ptr_equal(other, scene->materials[1]);
+    ty_bounds bounds = ty_world_bounds(scene->world);
+    assert_true(bounds.high.x > 1.0f);
+}
+
+// The recipe of a frame, read by itself, is that frame; frames differ in their hashes, one frame does not.
+static void a_recipe_tells_its_frame(void** state)
+{
+    (void)state;
+    load(HEAD "camera: { position: { keys: { 1: [0, 0, 1], 4: [0, 0.3, 1] }, interpolate: smooth } }\n"
+              "objects: [{ mesh: ball, material: grey, scale: { keys: { 1: 1, 9: 2 } } }]\n"
+              "assets: { ball: { shape: sphere, divisions: 8 } }\nmaterials: { grey: { model: surface } }\n",
+         false);
+    assert_non_null(strstr(fixture_scene->recipe, "frame: 1\n"));
+    char first[33];
+    memcpy(first, fixture_scene->hash, sizeof first);
+    set_frame(2.5);
+    assert_string_not_equal(first, fixture_scene->hash);
+    assert_non_null(strstr(fixture_scene->recipe, "frame: 2.5\n"));
+    assert_non_null(strstr(fixture_scene->recipe, "interpolate: smooth"));
+    char* recipe = ty_string_copy(fixture_scene->recipe);
+    ty_camera_def camera = fixture_scene->camera;
+    load(recipe, false);
+    assert_string_equal(recipe, fixture_scene->recipe);
+    assert_memory_equal(&camera.position, &fixture_scene->camera.position, sizeof camera.position);
+    set_frame(1);
+    assert_string_equal(first, fixture_scene->hash);
+    ty_free(recipe);
+}
+
+static void still_scenes_say_nothing_of_frames(void** state)
+{
+    (void)state;
+    load("tsuya: 1\n" BODY, false);
+    assert_null(strstr(fixture_scene->recipe, "frame"));
+}
+
+static void seeds_move_only_when_asked(void** state)
+{
+    (void)state;
+    load("tsuya: 1\nrender: { seed: 7 }\n" BODY, false);
+    set_frame(12);
+    assert_int_equal(fixture_scene->render.seed.value, 7);
+    load("tsuya: 1\nrender: { seed: 7, animate_seed: true }\n" BODY, false);
+    set_frame(12);
+    uint64_t twelve = fixture_scene->render.seed.value;
+    set_frame(13);
+    assert_true(twelve != fixture_scene->render.seed.value);
+    set_frame(12);
+    assert_true(twelve == fixture_scene->render.seed.value);
+}
+
+static void a_turn_closes(void** state)
+{
+    (void)state;
+    load(HEAD "camera: { position: [0.3, 0.2, 1], look_at: [0.1, 0, 0] }\n"
+              "turntable: { angle: { keys: { 1: 0, 25: 360 }, after: loop } }\n" BODY,
+         false);
+    const ty_camera_def* camera = &fixture_scene->camera;
+    set_frame(7); // a quarter, counter-clockwise from above: +z goes to +x
+    fixture_near(camera->position.x, 0.1f + 1.0f, 1e-6f);
+    fixture_near(camera->position.y, 0.2f, 1e-6f);
+    fixture_near(camera->position.z, -0.2f, 1e-6f);
+    fixture_near(camera->look_at.x, 0.1f, 1e-6f);
+    set_frame(1);
+    ty_camera_def first = *camera;
+    assert_true(first.position.x == 0.3f && first.position.z == 1.0f);
+    set_frame(25);
+    assert_memory_equal(&first, camera, sizeof first);
+    load(HEAD "camera: { position: [0, 0.2, 1] }\n"
+              "turntable: { turn: objects, angle: { keys: { 1: 0, 25: 360 }, after: loop }, about: [1, 0, 0] }\n" BODY,
+         true);
+    set_frame(13);
+    ty_bounds bounds = ty_world_bounds(fixture_scene->world);
+    fixture_near(0.5f * (bounds.low.x + bounds.high.x), 2.0f, 1e-5f);
+    assert_true(fixture_scene->camera.position.x == 0.0f);
+}
+
+static void mistakes_are_told_where_they_stand(void** state)
+{
+    (void)state;
+    fixture_one_error("tsuya: 1\ncamera:\n  vfov: { keys: {} }\n", 3, 17, "mapping of frames");
+    fixture_one_error("tsuya: 1\ncamera:\n  vfov: { keys: { 1: 20, two: 3 } }\n", 3, 26, "frame number");
+    fixture_one_error("tsuya: 1\ncamera:\n  vfov: { keys: { 1: 20, 1.0: 3 } }\n", 3, 31, "twice");
+    fixture_one_error("tsuya: 1\ncamera:\n  vfov: { keys: { 1: 20, 5: 500, 9: 30 } }\n", 3, 29, "out of range");
+    fixture_one_error("tsuya: 1\ncamera:\n  vfov: { keys: { 1: 20, 5: wide } }\n", 3, 29, "expected a number");
+    fixture_one_error("tsuya: 1\ncamera:\n  position: { keys: { 1: [0, 0, 1], 5: [0, 1] } }\n", 3, 40,
+                      "as in the first key");
+    fixture_one_error("tsuya: 1\ncamera:\n  vfov: { keys: { 1: 20 }, interpolate: smoth }\n", 3, 41, "smooth");
+    fixture_one_error("tsuya: 1\ncamera:\n  vfov: { keys: { 1: 20 }, after: loop }\n", 3, 9, "two keys");
+    fixture_one_error("tsuya: 1\ncamera:\n  vfov: { keys: { 1: 20 }, afer: loop }\n", 3, 28, "did you mean 'after'");
+    fixture_one_error("tsuya: 1\nfilm:\n  filter_width: { keys: { 1: 2 } }\n", 3, 17, "same for all frames");
+    fixture_one_error("tsuya: 1\nassets:\n  a: { shape: sphere, radius: { keys: { 1: 2 } } }\n", 3, 31, "made once");
+    fixture_one_error("tsuya: 1\ntimeline: { start: 5, end: 4 }\n", 2, 28, "ahead of 'start'");
+    fixture_one_error("tsuya: 1\nframe: soon\n", 2, 8, "expected a number");
+    fixture_one_error("tsuya: 1\nlights:\n  - { type: point, intensity: { keys: { 1: 1, 5: -2 } } }\n", 3, 50,
+                      "out of range");
+}
+
+static void time_outside_is_an_error_if_asked(void** state)
+{
+    (void)state;
+    load_vfov("{ keys: { 1: 10, 9: 30 }, after: error, before: hold }");
+    fixture_near(vfov_at(-3), 10.0f, 1e-5f);
+    fixture_near(vfov_at(9), 30.0f, 1e-5f);
+    assert_int_equal(ty_scene_set_frame(fixture_scene, 10, &fixture_errors), TY_BAD_INPUT);
+    assert_true(fixture_has("scene.yaml", 3, 17, "frame 10 is after the last key, frame 9"));
+    fixture_near(vfov_at(9), 30.0f, 1e-5f);
+    // a slope that leaves the range is told at the frame where it does
+    load_vfov("{ keys: { 1: 10, 9: 30 }, after: continue }");
+    fixture_near(vfov_at(20), 57.5f, 1e-4f);
+    assert_int_equal(ty_scene_set_frame(fixture_scene, 100, &fixture_errors), TY_BAD_INPUT);
+    assert_true(fixture_has("scene.yaml", 3, 37, "out of range"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        FIXTURE_TEST(keys_are_met_and_joined),
+        FIXTURE_TEST(smooth_is_monotone),
+        FIXTURE_TEST(outside_the_keys),
+        FIXTURE_TEST(every_kind_of_value),
+        FIXTURE_TEST(a_key_is_the_number),
+        FIXTURE_TEST(only_what_changes_is_made_again),
+        FIXTURE_TEST(a_recipe_tells_its_frame),
+        FIXTURE_TEST(still_scenes_say_nothing_of_frames),
+        FIXTURE_TEST(seeds_move_only_when_asked),
+        FIXTURE_TEST(a_turn_closes),
+        FIXTURE_TEST(mistakes_are_told_where_they_stand),
+        FIXTURE_TEST(time_outside_is_an_error_if_asked),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
