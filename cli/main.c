@@ -10,7 +10,7 @@
 
 static const ty_command* const commands[] = {&ty_command_render, &ty_command_develop, &ty_command_merge,
                                              &ty_command_check,  &ty_command_info,    &ty_command_params,
-                                             &ty_command_pack,   &ty_command_doctor};
+                                             &ty_command_pack,   &ty_command_fill,    &ty_command_doctor};
 enum
 {
     COMMAND_COUNT = sizeof commands / sizeof commands[0]

@@ -3,8 +3,9 @@
 #include <string.h>
 #include <tsuya/generate/aggregate_recipe.h>
 #include <tsuya/generate/asset.h>
+#include <tsuya/generate/fill_recipe.h>
 
-static const ty_generator* const generators[] = {&ty_aggregate_generator};
+static const ty_generator* const generators[] = {&ty_aggregate_generator, &ty_fill_generator};
 
 const ty_generator* const* ty_generator_list(int* count)
 {
