@@ -56,6 +56,11 @@ void ty_color_destroy(ty_color* color)
     ty_free(color);
 }
 
+const char* ty_color_identity(const ty_color* color)
+{
+    return ty_ocio_identity(color->ocio);
+}
+
 const char* ty_color_choose(const char* command_line, const char* scene, const char** source)
 {
     const char* paths[] = {command_line, scene, getenv("OCIO")};

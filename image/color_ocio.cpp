@@ -17,6 +17,7 @@ namespace OCIO = OCIO_NAMESPACE;
 struct ty_ocio
 {
     OCIO::ConstConfigRcPtr config;
+    std::string identity;
     std::vector<std::string> spaces, displays;
     std::map<std::string, std::vector<std::string>> views;
     mutable std::mutex guard; // of processors
@@ -50,6 +51,19 @@ template <class Function> ty_ocio_result guarded(char* text, size_t size, Functi
     catch (...)
     {
         return fail(text, size, "unknown exception");
+    }
+}
+
+// Without the files it refers to where one of them cannot be read: a conversion that needs it will say so.
+std::string identity_of(const OCIO::ConstConfigRcPtr& config)
+{
+    try
+    {
+        return config->getCacheID();
+    }
+    catch (const OCIO::Exception&)
+    {
+        return config->getCacheID(OCIO::ConstContextRcPtr());
     }
 }
 
@@ -134,6 +148,7 @@ ty_ocio_result ty_ocio_load(const char* path, const char* embedded, ty_ocio** ou
                            ocio->config = OCIO::Config::CreateFromStream(stream);
                        }
                        ocio->config->validate();
+                       ocio->identity = identity_of(ocio->config);
                        gather_names(*ocio);
                        *out = ocio.release();
                        return TY_OCIO_OK;
@@ -143,6 +158,11 @@ ty_ocio_result ty_ocio_load(const char* path, const char* embedded, ty_ocio** ou
 void ty_ocio_close(ty_ocio* ocio)
 {
     delete ocio;
+}
+
+const char* ty_ocio_identity(const ty_ocio* ocio)
+{
+    return ocio->identity.c_str();
 }
 
 int ty_ocio_knows(const ty_ocio* ocio, const char* name)

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shim over OpenImageIO: alpha as stored, no threads of its own, no dither, no time stamps.
-#include "image_oiio.h"
+#include "oiio_guard.h"
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <cstdio>
-#include <exception>
 #include <memory>
-#include <new>
 #include <vector>
 
 struct ty_oiio_input
@@ -19,10 +16,7 @@ struct ty_oiio_output
     std::vector<unsigned char> bytes;
 };
 
-namespace
-{
-
-void set_up()
+void ty_oiio_set_up()
 {
     static const bool done = []
     {
@@ -35,8 +29,7 @@ void set_up()
     (void)done;
 }
 
-// The library's messages end in newlines and may hold several lines; ours are one.
-void set_text(char* text, size_t size, const std::string& message)
+void ty_oiio_set_text(char* text, size_t size, const std::string& message)
 {
     std::snprintf(text, size, "%s", message.empty() ? "unknown reason" : message.c_str());
     size_t length = 0;
@@ -50,31 +43,8 @@ void set_text(char* text, size_t size, const std::string& message)
     text[length] = 0;
 }
 
-ty_oiio_result fail(char* text, size_t size, const std::string& message)
+namespace
 {
-    set_text(text, size, message);
-    return TY_OIIO_FAILED;
-}
-
-template <class Function> ty_oiio_result guarded(char* text, size_t size, Function function)
-{
-    try
-    {
-        return function();
-    }
-    catch (const std::bad_alloc&)
-    {
-        return TY_OIIO_NO_MEMORY;
-    }
-    catch (const std::exception& exception)
-    {
-        return fail(text, size, exception.what());
-    }
-    catch (...)
-    {
-        return fail(text, size, "unknown exception");
-    }
-}
 
 void fill_info(const OIIO::ImageSpec& spec, ty_oiio_info* info)
 {
@@ -104,36 +74,37 @@ ty_oiio_result ty_oiio_open(const char* format, const char* path, ty_oiio_input*
                             size_t text_size)
 {
     *out = nullptr;
-    return guarded(text, text_size,
-                   [&]
-                   {
-                       set_up();
-                       std::unique_ptr<OIIO::ImageInput> file = OIIO::ImageInput::create(format);
-                       if (!file)
-                           return fail(text, text_size, OIIO::geterror());
-                       OIIO::ImageSpec config, spec;
-                       config.attribute("oiio:UnassociatedAlpha", 1);
-                       if (!file->open(path, spec, config))
-                           return fail(text, text_size, file->geterror());
-                       fill_info(spec, info);
-                       *out = new ty_oiio_input{std::move(file)};
-                       return TY_OIIO_OK;
-                   });
+    return ty_oiio_guarded(text, text_size,
+                           [&]
+                           {
+                               ty_oiio_set_up();
+                               std::unique_ptr<OIIO::ImageInput> file = OIIO::ImageInput::create(format);
+                               if (!file)
+                                   return ty_oiio_fail(text, text_size, OIIO::geterror());
+                               OIIO::ImageSpec config, spec;
+                               config.attribute("oiio:UnassociatedAlpha", 1);
+                               if (!file->open(path, spec, config))
+                                   return ty_oiio_fail(text, text_size, file->geterror());
+                               fill_info(spec, info);
+                               *out = new ty_oiio_input{std::move(file)};
+                               return TY_OIIO_OK;
+                           });
 }
 
 ty_oiio_result ty_oiio_read(ty_oiio_input* input, float* pixels, char* text, size_t text_size)
 {
-    return guarded(text, text_size,
-                   [&]
-                   {
-                       OIIO::ImageInput& file = *input->file;
-                       const int channels = file.spec().nchannels;
-                       // A JPEG that ends early reads as grey with a warning that stands only in the error text.
-                       const bool good = file.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, pixels);
-                       if (!good || file.has_error())
-                           return fail(text, text_size, file.geterror());
-                       return TY_OIIO_OK;
-                   });
+    return ty_oiio_guarded(text, text_size,
+                           [&]
+                           {
+                               OIIO::ImageInput& file = *input->file;
+                               const int channels = file.spec().nchannels;
+                               // A JPEG that ends early reads as grey with a warning that stands only in the error
+                               // text.
+                               const bool good = file.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, pixels);
+                               if (!good || file.has_error())
+                                   return ty_oiio_fail(text, text_size, file.geterror());
+                               return TY_OIIO_OK;
+                           });
 }
 
 void ty_oiio_close(ty_oiio_input* input)
@@ -142,50 +113,51 @@ void ty_oiio_close(ty_oiio_input* input)
         return;
     char text[64];
     // Pending messages would be printed by the destructor.
-    (void)guarded(text, sizeof text,
-                  [&]
-                  {
-                      (void)input->file->geterror();
-                      input->file->close();
-                      (void)input->file->geterror();
-                      delete input;
-                      return TY_OIIO_OK;
-                  });
+    (void)ty_oiio_guarded(text, sizeof text,
+                          [&]
+                          {
+                              (void)input->file->geterror();
+                              input->file->close();
+                              (void)input->file->geterror();
+                              delete input;
+                              return TY_OIIO_OK;
+                          });
 }
 
 ty_oiio_result ty_oiio_encode(const char* format, int width, int height, int channels, int bits, const void* levels,
                               const char* color_space, ty_oiio_output** out, char* text, size_t text_size)
 {
     *out = nullptr;
-    return guarded(text, text_size,
-                   [&]
-                   {
-                       set_up();
-                       auto output = std::make_unique<ty_oiio_output>();
-                       OIIO::Filesystem::IOVecOutput memory(output->bytes);
-                       void* proxy = &memory;
-                       std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create(format);
-                       if (!file || !file->supports("ioproxy"))
-                           return fail(text, text_size, file ? "cannot be written in memory" : OIIO::geterror());
-                       const OIIO::TypeDesc type = bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
-                       OIIO::ImageSpec spec(width, height, channels, type);
-                       spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-                       spec.attribute("oiio:UnassociatedAlpha", 1);
-                       if (color_space[0])
-                           spec.attribute("oiio:ColorSpace", color_space);
-                       if (std::string(format) == "jpeg")
-                           spec.attribute("Compression", "jpeg:95");
-                       if (std::string(format) == "tiff")
-                       {
-                           spec.attribute("Compression", "zip");
-                           spec.attribute("DateTime", 0); // not a date, so that none is written
-                       }
-                       const std::string name = std::string("memory.") + format;
-                       if (!file->open(name, spec) || !file->write_image(type, levels) || !file->close())
-                           return fail(text, text_size, file->geterror());
-                       *out = output.release();
-                       return TY_OIIO_OK;
-                   });
+    return ty_oiio_guarded(text, text_size,
+                           [&]
+                           {
+                               ty_oiio_set_up();
+                               auto output = std::make_unique<ty_oiio_output>();
+                               OIIO::Filesystem::IOVecOutput memory(output->bytes);
+                               void* proxy = &memory;
+                               std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create(format);
+                               if (!file || !file->supports("ioproxy"))
+                                   return ty_oiio_fail(text, text_size,
+                                                       file ? "cannot be written in memory" : OIIO::geterror());
+                               const OIIO::TypeDesc type = bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
+                               OIIO::ImageSpec spec(width, height, channels, type);
+                               spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+                               spec.attribute("oiio:UnassociatedAlpha", 1);
+                               if (color_space[0])
+                                   spec.attribute("oiio:ColorSpace", color_space);
+                               if (std::string(format) == "jpeg")
+                                   spec.attribute("Compression", "jpeg:95");
+                               if (std::string(format) == "tiff")
+                               {
+                                   spec.attribute("Compression", "zip");
+                                   spec.attribute("DateTime", 0); // not a date, so that none is written
+                               }
+                               const std::string name = std::string("memory.") + format;
+                               if (!file->open(name, spec) || !file->write_image(type, levels) || !file->close())
+                                   return ty_oiio_fail(text, text_size, file->geterror());
+                               *out = output.release();
+                               return TY_OIIO_OK;
+                           });
 }
 
 const void* ty_oiio_output_bytes(const ty_oiio_output* output, size_t* size)

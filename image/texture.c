@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures: an image file as halves in ACEScg, and bilinear lookups in it.
+#include "texel_wrap.h"
 #include <tsuya/base/memory.h>
 #include <tsuya/image/half.h>
 #include <tsuya/image/image.h>
@@ -107,54 +108,11 @@ ty_rgb ty_texture_texel(const ty_texture* texture, int x, int y)
     return ty_rgb_make(ty_half_to_float(texel[0]), ty_half_to_float(texel[1]), ty_half_to_float(texel[2]));
 }
 
-// Brings a coordinate near the image, so that the texel index below fits an int for any u, NaN included.
-static float reduce(float u, ty_wrap wrap)
-{
-    if (!(fabsf(u) < 1e9f))
-        return 0.0f;
-    switch (wrap)
-    {
-    case TY_WRAP_REPEAT:
-        return u - floorf(u);
-    case TY_WRAP_MIRROR:
-        return u - 2.0f * floorf(0.5f * u);
-    case TY_WRAP_CLAMP:
-        break;
-    }
-    return ty_clamp(u, 0.0f, 1.0f);
-}
-
-// The texel in the image for one at most a row outside what reduce leaves.
-static int wrap_index(int i, int count, ty_wrap wrap)
-{
-    switch (wrap)
-    {
-    case TY_WRAP_REPEAT:
-        return i < 0 ? i + count : i >= count ? i - count : i;
-    case TY_WRAP_MIRROR:
-        i = i < 0 ? -1 - i : i;
-        i = i >= 2 * count ? i - 2 * count : i;
-        return i >= count ? 2 * count - 1 - i : i;
-    case TY_WRAP_CLAMP:
-        break;
-    }
-    return i < 0 ? 0 : i >= count ? count - 1 : i;
-}
-
-// The two texels of one axis and the weight of the second.
-static float taps(float u, int count, ty_wrap wrap, int index[2])
-{
-    float position = reduce(u, wrap) * (float)count - 0.5f, base = floorf(position);
-    index[0] = wrap_index((int)base, count, wrap);
-    index[1] = wrap_index((int)base + 1, count, wrap);
-    return position - base;
-}
-
 ty_rgb ty_texture_sample(const ty_texture* texture, ty_vec2 uv)
 {
     int x[2], y[2];
-    float s = taps(uv.x, texture->width, texture->wrap, x);
-    float t = taps(1.0f - uv.y, texture->height, texture->wrap, y);
+    float s = ty_wrap_taps(uv.x, texture->width, texture->wrap, x);
+    float t = ty_wrap_taps(1.0f - uv.y, texture->height, texture->wrap, y);
     ty_rgb top = ty_rgb_lerp(ty_texture_texel(texture, x[0], y[0]), ty_texture_texel(texture, x[1], y[0]), s);
     ty_rgb bottom = ty_rgb_lerp(ty_texture_texel(texture, x[0], y[1]), ty_texture_texel(texture, x[1], y[1]), s);
     return ty_rgb_lerp(top, bottom, t);

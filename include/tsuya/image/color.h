@@ -11,6 +11,9 @@ typedef struct ty_color ty_color; // opaque: a loaded configuration; processors 
 TY_CHECKED ty_status ty_color_create(const char* path, ty_color** out, ty_error* error);
 void ty_color_destroy(ty_color* color); // NULL is allowed
 
+// A text that differs between configurations that may convert differently: for keys of what was converted. Borrowed.
+const char* ty_color_identity(const ty_color* color);
+
 // The configuration to use by precedence: command line > scene > $OCIO > embedded. Arguments may be NULL.
 // *source says which won ("--ocio", "scene", "$OCIO", "embedded"), for the log.
 const char* ty_color_choose(const char* command_line, const char* scene, const char** source);
