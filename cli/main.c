@@ -8,9 +8,18 @@
 #include <tsuya/base/suggest.h>
 #include <tsuya/base/workers.h>
 
-static const ty_command* const commands[] = {&ty_command_render, &ty_command_develop, &ty_command_merge,
-                                             &ty_command_check,  &ty_command_info,    &ty_command_params,
-                                             &ty_command_pack,   &ty_command_fill,    &ty_command_doctor};
+static const ty_command* const commands[] = {
+    &ty_command_render,  //
+    &ty_command_develop, //
+    &ty_command_merge,   //
+    &ty_command_compare, //
+    &ty_command_check,   //
+    &ty_command_info,    //
+    &ty_command_params,  //
+    &ty_command_pack,    //
+    &ty_command_fill,    //
+    &ty_command_doctor,  //
+};
 enum
 {
     COMMAND_COUNT = sizeof commands / sizeof commands[0]
@@ -24,11 +33,11 @@ static void print_help(void)
     {
         printf("  %-9s %s\n", commands[i]->name, commands[i]->summary);
     }
-    printf(
-        "\n`tsuya COMMAND --help` tells a command's options; results go to standard output, messages to standard "
-        "error.\nExit status: 0 done, 2 usage, 3 bad scene or recipe, 4 file or device error, 5 memory, 6 non-finite "
-        "samples,\n7 not at rest, 70 internal error, 129/130/143 stopped by a signal.\n\n"
-        "example: tsuya render scenes/rice_bowl -o out/rice_bowl.exr --quick --develop\n");
+    printf("\n`tsuya COMMAND --help` tells a command's options; results go to standard output, messages to standard "
+           "error.\nExit status: 0 done, 1 differs, 2 usage, 3 bad scene or recipe, 4 file or device error, 5 memory, "
+           "6 non-finite "
+           "samples,\n7 not at rest, 70 internal error, 129/130/143 stopped by a signal.\n\n"
+           "example: tsuya render scenes/rice_bowl -o out/rice_bowl.exr --quick --develop\n");
 }
 
 static const ty_command* find_command(const char* name)
