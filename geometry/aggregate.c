@@ -32,7 +32,7 @@ void ty_aggregate_destroy(ty_aggregate* aggregate)
 {
     if (!aggregate)
         return;
-    for (int i = 0; i < aggregate->prototype_count; i++)
+    for (int i = 0; i < aggregate->prototype_count && !aggregate->borrows_prototypes; i++)
         ty_mesh_destroy(aggregate->prototypes[i]);
     for (int i = 0; i < aggregate->attribute_count; i++)
         ty_free(aggregate->attributes[i].values);

@@ -2,6 +2,7 @@
 // From the importer's model to an aggregate.
 #include "aggregate_gather.h"
 #include "glb.h"
+#include "gltf_mesh.h"
 #include "placement.h"
 #include <string.h>
 
@@ -16,6 +17,7 @@ typedef struct gatherer
     float* floats;        // scratch, 4 per instance of a node
     uint32_t* integers;   // scratch, one per instance of a node
     uint32_t next;        // place of the next instance without _ORDER
+    bool is_single;       // one node's instances, in the node's space
 } gatherer;
 
 #define FAIL(g, ...) ty_error_set_at((g)->error, TY_BAD_FILE, (g)->name, 0, 0, __VA_ARGS__)
@@ -23,169 +25,6 @@ typedef struct gatherer
 static ty_status no_memory(const gatherer* g)
 {
     return ty_error_set_at(g->error, TY_NO_MEMORY, g->name, 0, 0, "no memory for what the file holds");
-}
-
-// The semantic without its underscore in lower case; false when it has none or does not fit.
-static bool plain_name(const char* semantic, char name[32])
-{
-    size_t length = strlen(semantic);
-    if (semantic[0] != '_' || length < 2 || length > 32)
-        return false;
-    for (size_t i = 1; i <= length; i++)
-        name[i - 1] = (char)(semantic[i] >= 'A' && semantic[i] <= 'Z' ? semantic[i] - 'A' + 'a' : semantic[i]);
-    return true;
-}
-
-// --- meshes ---
-
-static bool every_primitive_has(const ty_gltf* gltf, int mesh, const char* semantic, int width)
-{
-    for (int p = 0; p < ty_gltf_primitive_count(gltf, mesh); p++)
-    {
-        int accessor = ty_gltf_vertex_accessor(gltf, mesh, p, semantic);
-        if (accessor < 0 || ty_gltf_accessor_width(gltf, accessor) != width)
-            return false;
-    }
-    return true;
-}
-
-// One channel of all primitives one after another; NULL when it is not in each of them.
-static ty_status read_channel(const gatherer* g, int mesh, const char* semantic, int width, uint32_t vertices,
-                              float** out)
-{
-    *out = NULL;
-    if (!every_primitive_has(g->gltf, mesh, semantic, width))
-        return TY_OK;
-    float* values = ty_try_alloc(vertices, (size_t)width * sizeof(float));
-    if (!values)
-        return no_memory(g);
-    float* at = values;
-    for (int p = 0; p < ty_gltf_primitive_count(g->gltf, mesh); p++)
-    {
-        int accessor = ty_gltf_vertex_accessor(g->gltf, mesh, p, semantic);
-        if (!ty_gltf_read_floats(g->gltf, accessor, at))
-        {
-            ty_free(values);
-            return FAIL(g, "meshes[%d].primitives[%d].%s cannot be read", mesh, p, semantic);
-        }
-        at += (size_t)ty_gltf_accessor_count(g->gltf, accessor) * (size_t)width;
-    }
-    *out = values;
-    return TY_OK;
-}
-
-static ty_status read_triangles(const gatherer* g, int mesh, ty_mesh* out)
-{
-    uint32_t first_vertex = 0, *at = out->triangles[0];
-    for (int p = 0; p < ty_gltf_primitive_count(g->gltf, mesh); p++)
-    {
-        uint32_t vertices = ty_gltf_accessor_count(g->gltf, ty_gltf_vertex_accessor(g->gltf, mesh, p, "POSITION"));
-        int indices = ty_gltf_vertex_accessor(g->gltf, mesh, p, NULL);
-        uint32_t count = indices < 0 ? vertices : ty_gltf_accessor_count(g->gltf, indices);
-        if (indices < 0)
-            for (uint32_t i = 0; i < count; i++)
-                at[i] = i;
-        else if (!ty_gltf_read_integers(g->gltf, indices, at))
-            return FAIL(g, "meshes[%d].primitives[%d].indices cannot be read", mesh, p);
-        for (uint32_t i = 0; i < count; i++)
-        {
-            if (at[i] >= vertices)
-                return FAIL(g, "meshes[%d].primitives[%d]: index %u at place %u, but only %u vertices", mesh, p, at[i],
-                            i, vertices);
-            at[i] += first_vertex;
-        }
-        first_vertex += vertices;
-        at += count;
-    }
-    return TY_OK;
-}
-
-static ty_status read_curvature(const gatherer* g, int index, ty_mesh* mesh)
-{
-    float *both = NULL, *direction = NULL;
-    uint32_t n = mesh->vertex_count;
-    ty_status status = read_channel(g, index, "_CURVATURE", 2, n, &both);
-    if (status == TY_OK)
-        status = read_channel(g, index, "_DIRECTION", 3, n, &direction);
-    if (status == TY_OK && both)
-    {
-        mesh->curvature_1 = TY_ALLOC(float, n);
-        mesh->curvature_2 = TY_ALLOC(float, n);
-        for (uint32_t i = 0; i < n; i++)
-        {
-            mesh->curvature_1[i] = both[2 * (size_t)i];
-            mesh->curvature_2[i] = both[2 * (size_t)i + 1];
-        }
-    }
-    mesh->direction_1 = (ty_vec3*)direction;
-    ty_free(both);
-    return status;
-}
-
-// Attributes of the first primitive that the others have too.
-static ty_status read_vertex_attributes(const gatherer* g, int index, ty_mesh* mesh)
-{
-    const char* semantic;
-    for (int i = 0; (semantic = ty_gltf_vertex_semantic(g->gltf, index, 0, i)) != NULL; i++)
-    {
-        char name[32];
-        int width = ty_gltf_accessor_width(g->gltf, ty_gltf_vertex_accessor(g->gltf, index, 0, semantic));
-        if (!plain_name(semantic, name) || strcmp(name, "curvature") == 0 || strcmp(name, "direction") == 0)
-            continue;
-        if (mesh->attribute_count >= TY_GLTF_ATTRIBUTES_MAX)
-            return FAIL(g, "meshes[%d] has more than %d attributes", index, TY_GLTF_ATTRIBUTES_MAX);
-        float* values;
-        ty_status status = read_channel(g, index, semantic, width, mesh->vertex_count, &values);
-        if (status != TY_OK)
-            return status;
-        if (values)
-            memcpy(ty_mesh_add_attribute(mesh, name, width), values,
-                   (size_t)mesh->vertex_count * (size_t)width * sizeof(float));
-        ty_free(values);
-    }
-    return TY_OK;
-}
-
-static ty_status read_mesh(const gatherer* g, int index, ty_mesh** out)
-{
-    uint64_t vertices = 0, corners = 0;
-    for (int p = 0; p < ty_gltf_primitive_count(g->gltf, index); p++)
-    {
-        int indices = ty_gltf_vertex_accessor(g->gltf, index, p, NULL);
-        uint32_t n = ty_gltf_accessor_count(g->gltf, ty_gltf_vertex_accessor(g->gltf, index, p, "POSITION"));
-        uint32_t m = indices < 0 ? n : ty_gltf_accessor_count(g->gltf, indices);
-        if (n == 0 || m == 0 || m % 3)
-            return FAIL(g, "meshes[%d].primitives[%d] holds no triangles", index, p);
-        vertices += n;
-        corners += m;
-    }
-    ty_mesh* mesh = vertices < UINT32_MAX && corners < UINT32_MAX
-                        ? ty_mesh_create((uint32_t)vertices, (uint32_t)(corners / 3))
-                        : NULL;
-    *out = mesh;
-    if (!mesh)
-        return no_memory(g);
-    float *positions, *normals, *uvs = NULL;
-    ty_free(mesh->positions);
-    ty_free(mesh->normals);
-    mesh->normals = NULL;
-    ty_status status = read_channel(g, index, "POSITION", 3, mesh->vertex_count, &positions);
-    mesh->positions = (ty_vec3*)positions;
-    if (status == TY_OK && !positions)
-        status = FAIL(g, "meshes[%d] has no positions", index);
-    if (status == TY_OK)
-    {
-        status = read_channel(g, index, "NORMAL", 3, mesh->vertex_count, &normals);
-        mesh->normals = (ty_vec3*)normals;
-    }
-    if (status == TY_OK)
-        status = read_channel(g, index, "TEXCOORD_0", 2, mesh->vertex_count, &uvs);
-    mesh->uvs = (ty_vec2*)uvs;
-    if (status == TY_OK)
-        status = read_triangles(g, index, mesh);
-    if (status == TY_OK)
-        status = read_curvature(g, index, mesh);
-    return status == TY_OK ? read_vertex_attributes(g, index, mesh) : status;
 }
 
 // --- nodes ---
@@ -339,7 +178,7 @@ static ty_status read_scalars(const gatherer* g, int node, uint32_t count, const
     for (int k = 0; (semantic = ty_gltf_instance_semantic(g->gltf, node, k)) != NULL; k++)
     {
         char name[32];
-        bool other = plain_name(semantic, name);
+        bool other = ty_gltf_plain_name(semantic, name);
         for (size_t i = 0; i < sizeof own / sizeof own[0]; i++)
             other = other && strcmp(name, own[i]) != 0;
         if (!other || ty_gltf_accessor_width(g->gltf, ty_gltf_instance_accessor(g->gltf, node, semantic)) != 1)
@@ -382,9 +221,10 @@ static ty_status read_node(gatherer* g, int node)
         status = read_scalars(g, node, count, places);
     for (uint32_t i = 0; i < count && status == TY_OK; i++)
     {
-        g->aggregate->prototype_index[places[i]] = (uint32_t)n.mesh;
+        g->aggregate->prototype_index[places[i]] = g->is_single ? 0 : (uint32_t)n.mesh;
         ty_affine* m = &g->aggregate->transforms[places[i]];
-        *m = concatenate(&g->node_maps[node], m);
+        if (!g->is_single)
+            *m = concatenate(&g->node_maps[node], m);
     }
     ty_free(g->floats);
     ty_free(g->integers);
@@ -404,9 +244,10 @@ static ty_status gather(gatherer* g)
     g->taken = TY_TRY_ALLOC(uint8_t, total);
     if (!g->aggregate || !g->taken)
         return no_memory(g);
+    const ty_gltf_mesh_job job = {.name = g->name, .gltf = g->gltf, .keeps_vertices = true, .error = g->error};
     ty_status status = map_nodes(g);
     for (int i = 0; i < meshes && status == TY_OK; i++)
-        status = read_mesh(g, i, &g->aggregate->prototypes[i]);
+        status = ty_gltf_gather_mesh(&job, i, &g->aggregate->prototypes[i]);
     for (int i = 0; i < nodes && status == TY_OK; i++)
         status = read_node(g, i);
     return status;
@@ -417,6 +258,20 @@ ty_status ty_aggregate_gather(const char* name, const ty_gltf* gltf, ty_aggregat
     gatherer g = {.name = name, .gltf = gltf, .error = error};
     ty_status status = gather(&g);
     ty_free(g.node_maps);
+    ty_free(g.taken);
+    if (status != TY_OK)
+        ty_aggregate_destroy(g.aggregate);
+    *out = status == TY_OK ? g.aggregate : NULL;
+    return status;
+}
+
+ty_status ty_aggregate_gather_node(const char* name, const ty_gltf* gltf, int node, ty_aggregate** out, ty_error* error)
+{
+    uint32_t count = instances_of(gltf, node);
+    gatherer g = {.name = name, .gltf = gltf, .error = error, .is_single = true};
+    g.aggregate = ty_aggregate_create(count, 0);
+    g.taken = TY_TRY_ALLOC(uint8_t, count);
+    ty_status status = g.aggregate && g.taken ? read_node(&g, node) : no_memory(&g);
     ty_free(g.taken);
     if (status != TY_OK)
         ty_aggregate_destroy(g.aggregate);

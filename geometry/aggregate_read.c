@@ -36,7 +36,7 @@ static ty_status import(const void* context, int output_fd, ty_error* error)
 
 // --- in the parent ---
 
-static ty_status check_instances(const char* path, const ty_aggregate* a, ty_error* error)
+ty_status ty_aggregate_validate(const char* path, const ty_aggregate* a, ty_error* error)
 {
     if (a->instance_count == 0)
         return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "no instances");
@@ -73,7 +73,7 @@ static ty_status read_glb(const char* path, const ty_bytes* bytes, ty_aggregate*
     json_t* root = NULL;
     ty_status status = ty_glb_split(path, bytes->data, bytes->size, &glb, error);
     if (status == TY_OK)
-        status = ty_gltf_check(path, &glb, &root, error);
+        status = ty_gltf_check_aggregate(path, &glb, &root, error);
     if (status != TY_OK)
         return status;
     ty_bytes sent = {0};
@@ -105,7 +105,7 @@ ty_status ty_aggregate_read(const char* path, const ty_mesh* points_prototype, t
         status = read_glb(path, &bytes, &aggregate, error);
     ty_bytes_term(&bytes);
     if (status == TY_OK)
-        status = check_instances(path, aggregate, error);
+        status = ty_aggregate_validate(path, aggregate, error);
     if (status == TY_OK)
         *out = aggregate;
     else

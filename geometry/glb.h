@@ -24,6 +24,14 @@ enum
     TY_GLTF_FLOAT = 5126,
 };
 
+// And for what the corners of a primitive are; below are points and lines.
+enum
+{
+    TY_GLTF_TRIANGLES = 4,
+    TY_GLTF_STRIP = 5,
+    TY_GLTF_FAN = 6,
+};
+
 typedef struct ty_glb
 {
     const char* json; // borrowed, not terminated
@@ -35,6 +43,10 @@ typedef struct ty_glb
 // ty_glb_check, and where the chunks are.
 TY_CHECKED ty_status ty_glb_split(const char* name, const void* bytes, size_t size, ty_glb* out, ty_error* error);
 
-// Parses the JSON chunk and checks every index, count and length in it that the reader relies on. On success the caller
-// releases *root with json_decref.
-TY_CHECKED ty_status ty_gltf_check(const char* name, const ty_glb* glb, json_t** root, ty_error* error);
+// How deep JSON goes is bounded before any parser sees it.
+TY_CHECKED ty_status ty_gltf_check_depth(const char* name, const char* json, size_t size, ty_error* error);
+// An object; the caller releases *root with json_decref. NULL on failure.
+TY_CHECKED ty_status ty_gltf_parse(const char* name, const char* json, size_t size, json_t** root, ty_error* error);
+// For an aggregate file: parses the JSON chunk and checks every index, count and length in it that the reader relies
+// on. On success the caller releases *root.
+TY_CHECKED ty_status ty_gltf_check_aggregate(const char* name, const ty_glb* glb, json_t** root, ty_error* error);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The container of a GLB file: header, chunks, lengths, and how deep its JSON goes.
-#include "glb.h"
+#include "gltf_json.h"
 #include <string.h>
 #include <tsuya/geometry/aggregate.h>
 
@@ -30,7 +30,7 @@ static ty_status check_header(const char* name, const uint8_t* bytes, size_t siz
 }
 
 // Quotes and brackets only: whether it is JSON the parser says. Bounds the recursion of every parser behind.
-static ty_status check_depth(const char* name, const char* json, size_t size, ty_error* error)
+ty_status ty_gltf_check_depth(const char* name, const char* json, size_t size, ty_error* error)
 {
     int depth = 0;
     bool quoted = false;
@@ -87,7 +87,7 @@ ty_status ty_glb_split(const char* name, const void* bytes, size_t size, ty_glb*
         return ty_error_set_at(error, TY_BAD_FILE, name, 0, 0, "the JSON chunk has %zu bytes; at most %zu are read",
                                out->json_size, TY_GLB_JSON_MAX);
     if (status == TY_OK)
-        status = check_depth(name, out->json, out->json_size, error);
+        status = ty_gltf_check_depth(name, out->json, out->json_size, error);
     if (status == TY_OK && offset < size)
         status = take_chunk(name, bytes, size, &offset, TY_GLB_BIN, &out->bin, &out->bin_size, error);
     if (status == TY_OK && offset < size)
@@ -101,13 +101,30 @@ ty_status ty_glb_check(const char* name, const void* bytes, size_t size, ty_erro
     return ty_glb_split(name, bytes, size, &glb, error);
 }
 
+ty_status ty_gltf_check_aggregate(const char* name, const ty_glb* glb, json_t** root, ty_error* error)
+{
+    ty_status status = ty_gltf_parse(name, glb->json, glb->json_size, root, error);
+    if (status != TY_OK)
+        return status;
+    const uint64_t size = glb->bin_size;
+    ty_gltf_checker c = {
+        .name = name, .error = error, .root = *root, .is_aggregate = true, .buffer_sizes = &size, .buffer_count = 1};
+    status = ty_gltf_check(&c);
+    if (status != TY_OK)
+    {
+        json_decref(*root);
+        *root = NULL;
+    }
+    return status;
+}
+
 ty_status ty_aggregate_check(const char* name, const void* bytes, size_t size, ty_error* error)
 {
     ty_glb glb;
     json_t* root = NULL;
     ty_status status = ty_glb_split(name, bytes, size, &glb, error);
     if (status == TY_OK)
-        status = ty_gltf_check(name, &glb, &root, error);
+        status = ty_gltf_check_aggregate(name, &glb, &root, error);
     json_decref(root);
     return status;
 }

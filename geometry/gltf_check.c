@@ -1,112 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
-// The JSON of a GLB file, checked against its bytes before an importer sees it.
-#include "glb.h"
+// A glTF file's JSON, checked against its bytes before an importer sees it: extensions, buffers, views, accessors.
+#include "gltf_json.h"
 #include <string.h>
-#include <tsuya/base/memory.h>
 
-typedef struct accessor
+// --- extensions ---
+
+static const char* const known_extensions[] = {
+    TY_GLTF_INSTANCING,           "KHR_lights_punctual",    "KHR_materials_emissive_strength",
+    "KHR_materials_transmission", "KHR_materials_ior",      "KHR_materials_volume",
+    "KHR_materials_clearcoat",    "KHR_materials_specular", "KHR_materials_anisotropy",
+    "KHR_texture_transform",      "KHR_mesh_quantization",
+};
+
+bool ty_gltf_knows_extension(const char* name)
 {
-    int component; // TY_GLTF_FLOAT ...
-    int width;     // 1..4 for SCALAR..VEC4; 0 for matrices, which nothing here reads
-    uint32_t count;
-    bool normalized;
-} accessor;
-
-typedef struct checker
-{
-    const char* name;
-    ty_error* error;
-    const json_t* root;
-    uint64_t bin_size;
-    uint64_t buffer_size;
-    accessor* accessors;
-    size_t accessor_count;
-    // What the whole file expands to: shared accessors must not multiply it out of proportion to the file.
-    uint64_t vertices, triangles, instances;
-} checker;
-
-#define FAIL(c, ...) ty_error_set_at((c)->error, TY_BAD_FILE, (c)->name, 0, 0, __VA_ARGS__)
-
-// --- fields ---
-
-// An integer in 0..maximum; absent = fallback, which may be negative (must be given: -2).
-static bool read_index(const json_t* object, const char* key, int64_t fallback, uint64_t maximum, int64_t* out)
-{
-    const json_t* value = json_object_get(object, key);
-    if (!value)
-    {
-        *out = fallback;
-        return fallback != -2;
-    }
-    if (!json_is_integer(value) || json_integer_value(value) < 0 || (uint64_t)json_integer_value(value) > maximum)
-        return false;
-    *out = json_integer_value(value);
-    return true;
+    for (size_t i = 0; i < sizeof known_extensions / sizeof known_extensions[0]; i++)
+        if (strcmp(name, known_extensions[i]) == 0)
+            return true;
+    return false;
 }
 
-// The array named key in root: NULL is an empty one.
-static ty_status get_list(const checker* c, const char* key, const json_t** out)
-{
-    *out = json_object_get(c->root, key);
-    if (*out && !json_is_array(*out))
-        return FAIL(c, "\"%s\" is not an array", key);
-    return TY_OK;
-}
-
-static ty_status check_numbers(const checker* c, const json_t* object, const char* key, size_t count, size_t index)
-{
-    const json_t* list = json_object_get(object, key);
-    if (!list)
-        return TY_OK;
-    if (json_array_size(list) != count)
-        return FAIL(c, "nodes[%zu].%s: expected %zu numbers", index, key, count);
-    for (size_t i = 0; i < count; i++)
-        if (!json_is_number(json_array_get(list, i)))
-            return FAIL(c, "nodes[%zu].%s[%zu] is not a number", index, key, i);
-    return TY_OK;
-}
-
-// --- asset, buffers, views ---
-
-static ty_status check_asset(const checker* c)
+static ty_status check_asset(const ty_gltf_checker* c)
 {
     const char* version = json_string_value(json_object_get(json_object_get(c->root, "asset"), "version"));
     if (!version || strncmp(version, "2.", 2) != 0)
-        return FAIL(c, "asset.version is %s; glTF 2 is read", version ? version : "missing");
-    const json_t* required;
-    ty_status status = get_list(c, "extensionsRequired", &required);
+        return TY_GLTF_FAIL(c, "asset.version is %.20s; glTF 2 is read", version ? version : "missing");
+    const json_t *required, *used;
+    ty_status status = ty_gltf_get_list(c, "extensionsRequired", &required);
     for (size_t i = 0; i < json_array_size(required) && status == TY_OK; i++)
     {
         const char* extension = json_string_value(json_array_get(required, i));
-        if (!extension || strcmp(extension, TY_GLTF_INSTANCING) != 0)
-            status = FAIL(c, "requires the extension %s, which is not read", extension ? extension : "?");
+        if (!extension || !ty_gltf_knows_extension(extension))
+            status = TY_GLTF_FAIL(c, "requires the extension %.80s, which is not read", extension ? extension : "?");
     }
-    return status;
+    return status == TY_OK ? ty_gltf_get_list(c, "extensionsUsed", &used) : status;
 }
 
-static ty_status check_buffers(checker* c)
+// --- buffers and views ---
+
+// An aggregate file is one file.
+static ty_status check_aggregate_files(const ty_gltf_checker* c)
 {
-    const json_t *buffers, *images;
-    ty_status status = get_list(c, "buffers", &buffers);
-    if (status == TY_OK)
-        status = get_list(c, "images", &images);
+    const json_t *buffers = json_object_get(c->root, "buffers"), *images;
+    ty_status status = ty_gltf_get_list(c, "images", &images);
     if (status != TY_OK)
         return status;
-    size_t count = json_array_size(buffers);
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < json_array_size(buffers); i++)
         if (json_object_get(json_array_get(buffers, i), "uri"))
-            return FAIL(c, "buffers[%zu]: external buffers are not read from aggregate files", i);
+            return TY_GLTF_FAIL(c, "buffers[%zu]: external buffers are not read from aggregate files", i);
     for (size_t i = 0; i < json_array_size(images); i++)
         if (json_object_get(json_array_get(images, i), "uri"))
-            return FAIL(c, "images[%zu]: external images are not read from aggregate files", i);
-    if (count > 1)
-        return FAIL(c, "%zu buffers; a GLB file holds one", count);
-    int64_t length = 0;
-    if (count && (!read_index(json_array_get(buffers, 0), "byteLength", -2, c->bin_size, &length) || length == 0))
-        return FAIL(c, "buffers[0].byteLength is missing or beyond the %llu bytes of the BIN chunk",
-                    (unsigned long long)c->bin_size);
-    c->buffer_size = (uint64_t)length;
+            return TY_GLTF_FAIL(c, "images[%zu]: external images are not read from aggregate files", i);
     return TY_OK;
+}
+
+static ty_status check_buffers(ty_gltf_checker* c)
+{
+    const json_t* buffers;
+    ty_status status = ty_gltf_get_list(c, "buffers", &buffers);
+    if (status == TY_OK && c->is_aggregate)
+        status = check_aggregate_files(c);
+    size_t count = json_array_size(buffers);
+    for (size_t i = 0; i < count && status == TY_OK; i++)
+    {
+        int64_t length = 0;
+        uint64_t size = i < c->buffer_count ? c->buffer_sizes[i] : 0;
+        if (!ty_gltf_read_index(json_array_get(buffers, i), "byteLength", -2, size, &length) || length == 0)
+            status = TY_GLTF_FAIL(c, "buffers[%zu].byteLength is missing or beyond the %llu bytes %s", i,
+                                  (unsigned long long)size, i ? "that are there" : "of the BIN chunk or file");
+        c->byte_count += (uint64_t)length;
+    }
+    return status;
 }
 
 typedef struct view
@@ -114,24 +78,28 @@ typedef struct view
     int64_t offset, length, stride;
 } view;
 
-static ty_status check_view(const checker* c, const json_t* object, size_t index, view* out)
+static ty_status check_view(const ty_gltf_checker* c, const json_t* object, size_t index, view* out)
 {
     int64_t buffer;
-    if (!read_index(object, "buffer", -2, 0, &buffer) || c->buffer_size == 0)
-        return FAIL(c, "bufferViews[%zu].buffer names no buffer of this file", index);
-    if (!read_index(object, "byteOffset", 0, c->buffer_size, &out->offset) ||
-        !read_index(object, "byteLength", -2, c->buffer_size - (uint64_t)out->offset, &out->length) || out->length == 0)
-        return FAIL(c, "bufferViews[%zu]: byteOffset or byteLength is beyond the buffer's %llu bytes", index,
-                    (unsigned long long)c->buffer_size);
-    if (!read_index(object, "byteStride", 0, 252, &out->stride) || out->stride % 4)
-        return FAIL(c, "bufferViews[%zu].byteStride is none of 4, 8 ... 252", index);
+    const json_t* buffers = json_object_get(c->root, "buffers");
+    size_t count = json_array_size(buffers);
+    if (count == 0 || !ty_gltf_read_index(object, "buffer", -2, count - 1, &buffer))
+        return TY_GLTF_FAIL(c, "bufferViews[%zu].buffer names no buffer of this file", index);
+    uint64_t size =
+        (uint64_t)json_integer_value(json_object_get(json_array_get(buffers, (size_t)buffer), "byteLength"));
+    if (!ty_gltf_read_index(object, "byteOffset", 0, size, &out->offset) ||
+        !ty_gltf_read_index(object, "byteLength", -2, size - (uint64_t)out->offset, &out->length) || out->length == 0)
+        return TY_GLTF_FAIL(c, "bufferViews[%zu]: byteOffset or byteLength is beyond the buffer's %llu bytes", index,
+                            (unsigned long long)size);
+    if (!ty_gltf_read_index(object, "byteStride", 0, 252, &out->stride) || out->stride % 4)
+        return TY_GLTF_FAIL(c, "bufferViews[%zu].byteStride is none of 4, 8 ... 252", index);
     return TY_OK;
 }
 
-static ty_status check_views(const checker* c)
+static ty_status check_views(const ty_gltf_checker* c)
 {
     const json_t* views;
-    ty_status status = get_list(c, "bufferViews", &views);
+    ty_status status = ty_gltf_get_list(c, "bufferViews", &views);
     view ignored;
     for (size_t i = 0; i < json_array_size(views) && status == TY_OK; i++)
         status = check_view(c, json_array_get(views, i), i, &ignored);
@@ -177,51 +145,82 @@ static int type_components(const char* type, int* width)
     return 0;
 }
 
-static ty_status check_accessor(const checker* c, const json_t* object, size_t index, accessor* out)
+// Elements of element bytes at byteOffset of object's bufferView, aligned to size and within it.
+static ty_status check_elements(const ty_gltf_checker* c, const json_t* object, size_t index, int64_t size,
+                                int64_t element, int64_t count, bool packed)
 {
     const json_t* views = json_object_get(c->root, "bufferViews");
-    int64_t component, count, offset, v;
-    if (json_object_get(object, "sparse"))
-        return FAIL(c, "accessors[%zu]: sparse accessors are not read", index);
-    if (!read_index(object, "componentType", -2, TY_GLTF_FLOAT, &component) || component_size(component) == 0)
-        return FAIL(c, "accessors[%zu].componentType is none of glTF's", index);
-    int components = type_components(json_string_value(json_object_get(object, "type")), &out->width);
-    if (components == 0)
-        return FAIL(c, "accessors[%zu].type is none of SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4", index);
+    int64_t offset, v;
     size_t view_count = json_array_size(views);
-    if (view_count == 0 || !read_index(object, "bufferView", -2, view_count - 1, &v))
-        return FAIL(c, "accessors[%zu].bufferView names none of the %zu views", index, view_count);
-    if (!read_index(object, "count", -2, UINT32_MAX - 1, &count) || count == 0)
-        return FAIL(c, "accessors[%zu].count is not a positive number", index);
+    if (view_count == 0 || !ty_gltf_read_index(object, "bufferView", -2, view_count - 1, &v))
+        return TY_GLTF_FAIL(c, "accessors[%zu].bufferView names none of the %zu views", index, view_count);
     view on;
     ty_status status = check_view(c, json_array_get(views, (size_t)v), (size_t)v, &on);
     if (status != TY_OK)
         return status;
-    int64_t element = (int64_t)component_size(component) * components;
-    int64_t stride = on.stride ? on.stride : element;
+    int64_t stride = on.stride && !packed ? on.stride : element;
     if (stride < element)
-        return FAIL(c, "accessors[%zu]: elements of %d bytes overlap at a stride of %d", index, (int)element,
-                    (int)stride);
-    if (!read_index(object, "byteOffset", 0, (uint64_t)on.length, &offset) || offset + element > on.length ||
+        return TY_GLTF_FAIL(c, "accessors[%zu]: elements of %d bytes overlap at a stride of %d", index, (int)element,
+                            (int)stride);
+    if (!ty_gltf_read_index(object, "byteOffset", 0, (uint64_t)on.length, &offset) || offset + element > on.length ||
         (count - 1) > (on.length - offset - element) / stride)
-        return FAIL(c, "accessors[%zu]: %lld elements do not fit into the %lld bytes of bufferViews[%lld]", index,
-                    (long long)count, (long long)on.length, (long long)v);
-    if ((on.offset + offset) % component_size(component))
-        return FAIL(c, "accessors[%zu]: its values are not aligned", index);
-    out->component = (int)component;
-    out->count = (uint32_t)count;
-    out->normalized = json_is_true(json_object_get(object, "normalized"));
+        return TY_GLTF_FAIL(c, "accessors[%zu]: %lld elements do not fit into the %lld bytes of bufferViews[%lld]",
+                            index, (long long)count, (long long)on.length, (long long)v);
+    if ((on.offset + offset) % size)
+        return TY_GLTF_FAIL(c, "accessors[%zu]: its values are not aligned", index);
     return TY_OK;
 }
 
-static ty_status check_accessors(checker* c)
+static ty_status check_sparse(const ty_gltf_checker* c, const json_t* sparse, size_t index, int64_t size,
+                              int64_t element, int64_t of)
+{
+    int64_t count, component;
+    const json_t *indices = json_object_get(sparse, "indices"), *values = json_object_get(sparse, "values");
+    if (c->is_aggregate)
+        return TY_GLTF_FAIL(c, "accessors[%zu]: sparse accessors are not read from aggregate files", index);
+    if (!ty_gltf_read_index(sparse, "count", -2, (uint64_t)of, &count) || count == 0)
+        return TY_GLTF_FAIL(c, "accessors[%zu].sparse.count is not within 1..%lld", index, (long long)of);
+    if (!ty_gltf_read_index(indices, "componentType", -2, TY_GLTF_UNSIGNED_INT, &component) ||
+        (component != TY_GLTF_UNSIGNED_BYTE && component != TY_GLTF_UNSIGNED_SHORT &&
+         component != TY_GLTF_UNSIGNED_INT))
+        return TY_GLTF_FAIL(c, "accessors[%zu].sparse.indices.componentType is no unsigned type", index);
+    int64_t width = component_size(component);
+    ty_status status = check_elements(c, indices, index, width, width, count, true);
+    return status == TY_OK ? check_elements(c, values, index, size, element, count, true) : status;
+}
+
+static ty_status check_accessor(const ty_gltf_checker* c, const json_t* object, size_t index, ty_gltf_accessor* out)
+{
+    int64_t component, count;
+    const json_t* sparse = json_object_get(object, "sparse");
+    if (!ty_gltf_read_index(object, "componentType", -2, TY_GLTF_FLOAT, &component) || component_size(component) == 0)
+        return TY_GLTF_FAIL(c, "accessors[%zu].componentType is none of glTF's", index);
+    int components = type_components(json_string_value(json_object_get(object, "type")), &out->width);
+    if (components == 0)
+        return TY_GLTF_FAIL(c, "accessors[%zu].type is none of SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4", index);
+    if (!ty_gltf_read_index(object, "count", -2, UINT32_MAX - 1, &count) || count == 0)
+        return TY_GLTF_FAIL(c, "accessors[%zu].count is not a positive number", index);
+    int64_t size = component_size(component), element = size * components;
+    ty_status status = TY_OK;
+    if (sparse)
+        status = check_sparse(c, sparse, index, size, element, count);
+    // Without a view all is zero but for what is sparse: the sums of what meshes use bound that.
+    if (status == TY_OK && (!sparse || json_object_get(object, "bufferView")))
+        status = check_elements(c, object, index, size, element, count, false);
+    out->component = (int)component;
+    out->count = (uint32_t)count;
+    out->normalized = json_is_true(json_object_get(object, "normalized"));
+    return status;
+}
+
+static ty_status check_accessors(ty_gltf_checker* c)
 {
     const json_t* list;
-    ty_status status = get_list(c, "accessors", &list);
+    ty_status status = ty_gltf_get_list(c, "accessors", &list);
     if (status != TY_OK)
         return status;
     c->accessor_count = json_array_size(list);
-    c->accessors = TY_TRY_ALLOC(accessor, c->accessor_count);
+    c->accessors = TY_TRY_ALLOC(ty_gltf_accessor, c->accessor_count);
     if (!c->accessors)
         return ty_error_set(c->error, TY_NO_MEMORY, "no memory for %zu accessors", c->accessor_count);
     for (size_t i = 0; i < c->accessor_count && status == TY_OK; i++)
@@ -229,9 +228,7 @@ static ty_status check_accessors(checker* c)
     return status;
 }
 
-// --- meshes ---
-
-static const accessor* get_accessor(const checker* c, const json_t* index)
+const ty_gltf_accessor* ty_gltf_get_accessor(const ty_gltf_checker* c, const json_t* index)
 {
     if (!json_is_integer(index) || json_integer_value(index) < 0 ||
         (size_t)json_integer_value(index) >= c->accessor_count)
@@ -239,226 +236,34 @@ static const accessor* get_accessor(const checker* c, const json_t* index)
     return &c->accessors[json_integer_value(index)];
 }
 
-// Width that a vertex attribute must have: 0 = any, -1 = it is not read.
-static int vertex_width(const char* semantic)
-{
-    if (strcmp(semantic, "POSITION") == 0 || strcmp(semantic, "NORMAL") == 0)
-        return 3;
-    if (strcmp(semantic, "TEXCOORD_0") == 0)
-        return 2;
-    return semantic[0] == '_' ? 0 : -1;
-}
-
-static ty_status check_indices(checker* c, const json_t* primitive, size_t mesh, size_t index, uint32_t vertices)
-{
-    const json_t* indices = json_object_get(primitive, "indices");
-    uint32_t count = vertices;
-    if (indices)
-    {
-        const accessor* a = get_accessor(c, indices);
-        if (!a || a->width != 1 || a->component == TY_GLTF_FLOAT || a->component == TY_GLTF_BYTE ||
-            a->component == TY_GLTF_SHORT)
-            return FAIL(c, "meshes[%zu].primitives[%zu].indices is no accessor of unsigned numbers", mesh, index);
-        count = a->count;
-    }
-    if (count % 3)
-        return FAIL(c, "meshes[%zu].primitives[%zu]: %u corners are no whole number of triangles", mesh, index, count);
-    c->triangles += count / 3;
-    return TY_OK;
-}
-
-static ty_status check_primitive(checker* c, const json_t* primitive, size_t mesh, size_t index)
-{
-    int64_t mode;
-    if (!read_index(primitive, "mode", 4, 6, &mode) || mode != 4)
-        return FAIL(c, "meshes[%zu].primitives[%zu].mode: only triangles (4) are read", mesh, index);
-    json_t* attributes = json_object_get(primitive, "attributes");
-    const accessor* position = get_accessor(c, json_object_get(attributes, "POSITION"));
-    if (!position)
-        return FAIL(c, "meshes[%zu].primitives[%zu] has no POSITION", mesh, index);
-    const char* semantic;
-    json_t* value;
-    json_object_foreach(attributes, semantic, value)
-    {
-        const accessor* a = get_accessor(c, value);
-        int width = vertex_width(semantic);
-        if (!a || a->count != position->count)
-            return FAIL(c, "meshes[%zu].primitives[%zu].%s: no accessor of %u elements", mesh, index, semantic,
-                        position->count);
-        if (width >= 0 && (a->component != TY_GLTF_FLOAT || a->width == 0 || (width && a->width != width)))
-            return FAIL(c, "meshes[%zu].primitives[%zu].%s: its accessor has the wrong type", mesh, index, semantic);
-        if (semantic[0] == '_' && strlen(semantic) > 32)
-            return FAIL(c, "meshes[%zu].primitives[%zu].%.40s: the name is longer than 32", mesh, index, semantic);
-    }
-    c->vertices += position->count;
-    return check_indices(c, primitive, mesh, index, position->count);
-}
-
-static ty_status check_meshes(checker* c)
-{
-    const json_t* meshes;
-    ty_status status = get_list(c, "meshes", &meshes);
-    for (size_t m = 0; m < json_array_size(meshes) && status == TY_OK; m++)
-    {
-        const json_t* primitives = json_object_get(json_array_get(meshes, m), "primitives");
-        if (json_array_size(primitives) == 0)
-            return FAIL(c, "meshes[%zu] has no primitives", m);
-        for (size_t p = 0; p < json_array_size(primitives) && status == TY_OK; p++)
-            status = check_primitive(c, json_array_get(primitives, p), m, p);
-    }
-    if (status == TY_OK && (c->vertices > c->bin_size / 3 || c->triangles > c->bin_size))
-        return FAIL(c, "the meshes claim %llu vertices and %llu triangles, more than %llu bytes can hold",
-                    (unsigned long long)c->vertices, (unsigned long long)c->triangles, (unsigned long long)c->bin_size);
-    return status;
-}
-
-// --- nodes ---
-
-static bool instance_type_fits(const char* semantic, const accessor* a)
-{
-    bool real = a->component == TY_GLTF_FLOAT;
-    bool packed = a->normalized && (a->component == TY_GLTF_BYTE || a->component == TY_GLTF_SHORT);
-    bool whole = !a->normalized && (a->component == TY_GLTF_UNSIGNED_BYTE || a->component == TY_GLTF_UNSIGNED_SHORT ||
-                                    a->component == TY_GLTF_UNSIGNED_INT);
-    if (strcmp(semantic, "TRANSLATION") == 0 || strcmp(semantic, "SCALE") == 0 || strncmp(semantic, "_MATRIX", 7) == 0)
-        return real && a->width == 3;
-    if (strcmp(semantic, "ROTATION") == 0)
-        return (real || packed) && a->width == 4;
-    // Vectors under other names belong to other programs and are left out by the reader.
-    return a->width != 1 || real || whole;
-}
-
-static ty_status check_instances(checker* c, const json_t* node, size_t index)
-{
-    json_t* extension = json_object_get(json_object_get(node, "extensions"), TY_GLTF_INSTANCING);
-    if (!extension)
-    {
-        c->instances += json_object_get(node, "mesh") != NULL;
-        return TY_OK;
-    }
-    if (!json_object_get(node, "mesh"))
-        return FAIL(c, "nodes[%zu] places instances, but names no mesh", index);
-    json_t* attributes = json_object_get(extension, "attributes");
-    const char* semantic;
-    json_t* value;
-    uint32_t count = 0;
-    json_object_foreach(attributes, semantic, value)
-    {
-        const accessor* a = get_accessor(c, value);
-        if (!a || !instance_type_fits(semantic, a))
-            return FAIL(c, "nodes[%zu].%s: its accessor is missing or has the wrong type", index, semantic);
-        if (count && a->count != count)
-            return FAIL(c, "nodes[%zu].%s has %u elements, others have %u", index, semantic, a->count, count);
-        if (semantic[0] == '_' && strlen(semantic) > 32)
-            return FAIL(c, "nodes[%zu].%.40s: the name is longer than 32", index, semantic);
-        count = a->count;
-    }
-    if (count == 0)
-        return FAIL(c, "nodes[%zu] has no instances", index);
-    c->instances += count;
-    return TY_OK;
-}
-
-static ty_status check_node(checker* c, const json_t* node, size_t index, size_t mesh_count)
-{
-    int64_t mesh;
-    if (!json_is_object(node))
-        return FAIL(c, "nodes[%zu] is not an object", index);
-    if (json_object_get(node, "mesh") && (mesh_count == 0 || !read_index(node, "mesh", -2, mesh_count - 1, &mesh)))
-        return FAIL(c, "nodes[%zu].mesh: the prototype is missing (the file has %zu meshes)", index, mesh_count);
-    ty_status status = check_numbers(c, node, "matrix", 16, index);
-    if (status == TY_OK)
-        status = check_numbers(c, node, "translation", 3, index);
-    if (status == TY_OK)
-        status = check_numbers(c, node, "rotation", 4, index);
-    if (status == TY_OK)
-        status = check_numbers(c, node, "scale", 3, index);
-    return status == TY_OK ? check_instances(c, node, index) : status;
-}
-
-// Every node has one parent at most, and following parents ends: nodes form trees.
-static ty_status check_trees(const checker* c, const json_t* nodes, size_t count, uint32_t* parent)
-{
-    for (size_t i = 0; i < count; i++)
-        parent[i] = UINT32_MAX;
-    for (size_t i = 0; i < count; i++)
-    {
-        const json_t* children = json_object_get(json_array_get(nodes, i), "children");
-        for (size_t k = 0; k < json_array_size(children); k++)
-        {
-            const json_t* child = json_array_get(children, k);
-            if (!json_is_integer(child) || json_integer_value(child) < 0 || (size_t)json_integer_value(child) >= count)
-                return FAIL(c, "nodes[%zu].children[%zu] is no node", i, k);
-            if (parent[json_integer_value(child)] != UINT32_MAX)
-                return FAIL(c, "nodes[%zu].children[%zu] has another parent", i, k);
-            parent[json_integer_value(child)] = (uint32_t)i;
-        }
-    }
-    // A walk over k parents marks its path as done, so all walks together take one pass.
-    for (size_t i = 0; i < count; i++)
-    {
-        size_t steps = 0;
-        uint32_t at = (uint32_t)i;
-        while (parent[at] != UINT32_MAX && steps++ <= count)
-            at = parent[at];
-        if (steps > count)
-            return FAIL(c, "nodes[%zu] is its own ancestor", i);
-        for (uint32_t walk = (uint32_t)i; walk != at;)
-        {
-            uint32_t next = parent[walk];
-            parent[walk] = UINT32_MAX;
-            walk = next;
-        }
-    }
-    return TY_OK;
-}
-
-static ty_status check_nodes(checker* c)
-{
-    const json_t *nodes, *meshes = json_object_get(c->root, "meshes");
-    ty_status status = get_list(c, "nodes", &nodes);
-    size_t count = json_array_size(nodes);
-    for (size_t i = 0; i < count && status == TY_OK; i++)
-        status = check_node(c, json_array_get(nodes, i), i, json_array_size(meshes));
-    if (status != TY_OK)
-        return status;
-    uint32_t* parent = TY_TRY_ALLOC(uint32_t, count);
-    if (!parent)
-        return ty_error_set(c->error, TY_NO_MEMORY, "no memory for %zu nodes", count);
-    status = check_trees(c, nodes, count, parent);
-    ty_free(parent);
-    if (status == TY_OK && c->instances == 0)
-        return FAIL(c, "no instances: no node places a mesh");
-    if (status == TY_OK && c->instances > c->bin_size / 4 + count)
-        return FAIL(c, "the nodes claim %llu instances, more than %llu bytes can hold",
-                    (unsigned long long)c->instances, (unsigned long long)c->bin_size);
-    return status;
-}
-
-ty_status ty_gltf_check(const char* name, const ty_glb* glb, json_t** root, ty_error* error)
+ty_status ty_gltf_parse(const char* name, const char* json, size_t size, json_t** root, ty_error* error)
 {
     json_error_t where;
-    *root = json_loadb(glb->json, glb->json_size, JSON_REJECT_DUPLICATES, &where);
+    *root = json_loadb(json, size, JSON_REJECT_DUPLICATES, &where);
     if (!*root)
         return ty_error_set_at(error, TY_BAD_FILE, name, 0, 0, "JSON chunk, line %d, column %d: %s", where.line,
                                where.column, where.text);
-    checker c = {.name = name, .error = error, .root = *root, .bin_size = glb->bin_size};
-    ty_status status = json_is_object(*root) ? check_asset(&c) : FAIL(&c, "the JSON chunk is not an object");
+    if (json_is_object(*root))
+        return TY_OK;
+    json_decref(*root);
+    *root = NULL;
+    return ty_error_set_at(error, TY_BAD_FILE, name, 0, 0, "the JSON chunk is not an object");
+}
+
+ty_status ty_gltf_check(ty_gltf_checker* c)
+{
+    ty_status status = check_asset(c);
     if (status == TY_OK)
-        status = check_buffers(&c);
+        status = check_buffers(c);
     if (status == TY_OK)
-        status = check_views(&c);
+        status = check_views(c);
     if (status == TY_OK)
-        status = check_accessors(&c);
+        status = check_accessors(c);
     if (status == TY_OK)
-        status = check_meshes(&c);
+        status = ty_gltf_check_meshes(c);
     if (status == TY_OK)
-        status = check_nodes(&c);
-    ty_free(c.accessors);
-    if (status != TY_OK)
-    {
-        json_decref(*root);
-        *root = NULL;
-    }
+        status = ty_gltf_check_nodes(c);
+    ty_free(c->accessors);
+    c->accessors = NULL;
     return status;
 }

@@ -61,38 +61,84 @@ template <size_t size> void copy_numbers(const std::vector<double>& from, float 
             to[i] = float(from[i]);
 }
 
-// Where the elements of an accessor lie; begin is null when they reach beyond the bytes.
-struct span
+// Where elements lie; begin is null when they reach beyond the bytes, or when there are none.
+struct plain_span
 {
     const unsigned char* begin;
     size_t stride;
+};
+
+plain_span plain_span_of(const tinygltf::Model& model, int view_index, size_t byte_offset, size_t stride,
+                         size_t element, size_t count)
+{
+    plain_span none = {nullptr, 0};
+    if (view_index < 0 || size_t(view_index) >= model.bufferViews.size() || count == 0)
+        return none;
+    const tinygltf::BufferView& view = model.bufferViews[size_t(view_index)];
+    if (view.buffer < 0 || size_t(view.buffer) >= model.buffers.size())
+        return none;
+    const auto& data = model.buffers[size_t(view.buffer)].data;
+    size_t offset = view.byteOffset + byte_offset;
+    if (offset > data.size() || element > data.size() - offset ||
+        (count - 1) > (data.size() - offset - element) / stride)
+        return none;
+    return {data.data() + offset, stride};
+}
+
+// An accessor's elements: plain, or zero, and those that are sparse. count is 0 when something does not fit.
+struct span
+{
+    plain_span values;
     size_t count;
     int width, component;
     bool normalized;
+    plain_span sparse_indices, sparse_values;
+    size_t sparse_count;
+    int sparse_component;
 };
 
 span span_of(const ty_gltf* gltf, int index)
 {
     const tinygltf::Model& model = gltf->model;
-    span none = {nullptr, 0, 0, 0, 0, false};
+    span out = {};
     if (index < 0 || size_t(index) >= model.accessors.size())
-        return none;
+        return out;
     const tinygltf::Accessor& a = model.accessors[size_t(index)];
-    if (a.bufferView < 0 || size_t(a.bufferView) >= model.bufferViews.size())
-        return none;
-    const tinygltf::BufferView& view = model.bufferViews[size_t(a.bufferView)];
-    if (view.buffer < 0 || size_t(view.buffer) >= model.buffers.size())
-        return none;
-    const auto& data = model.buffers[size_t(view.buffer)].data;
-    int stride = a.ByteStride(view), width = tinygltf::GetNumComponentsInType(uint32_t(a.type));
+    int width = tinygltf::GetNumComponentsInType(uint32_t(a.type));
     int component = tinygltf::GetComponentSizeInBytes(uint32_t(a.componentType));
-    if (stride <= 0 || width < 1 || width > 4 || component < 1 || a.count == 0)
-        return none;
-    size_t offset = view.byteOffset + a.byteOffset, element = size_t(width) * size_t(component);
-    if (offset > data.size() || element > data.size() - offset ||
-        (a.count - 1) > (data.size() - offset - element) / size_t(stride))
-        return none;
-    return {data.data() + offset, size_t(stride), a.count, width, a.componentType, a.normalized};
+    if (width < 1 || width > 4 || component < 1)
+        return out;
+    size_t element = size_t(width) * size_t(component);
+    if (a.bufferView >= 0)
+    {
+        if (size_t(a.bufferView) >= model.bufferViews.size())
+            return out;
+        int stride = a.ByteStride(model.bufferViews[size_t(a.bufferView)]);
+        if (stride <= 0)
+            return out;
+        out.values = plain_span_of(model, a.bufferView, a.byteOffset, size_t(stride), element, a.count);
+        if (!out.values.begin)
+            return out;
+    }
+    if (a.sparse.isSparse)
+    {
+        int size = tinygltf::GetComponentSizeInBytes(uint32_t(a.sparse.indices.componentType));
+        if (size < 1 || a.sparse.count < 1)
+            return out;
+        out.sparse_count = size_t(a.sparse.count);
+        out.sparse_component = a.sparse.indices.componentType;
+        out.sparse_indices = plain_span_of(model, a.sparse.indices.bufferView, size_t(a.sparse.indices.byteOffset),
+                                           size_t(size), size_t(size), out.sparse_count);
+        out.sparse_values = plain_span_of(model, a.sparse.values.bufferView, size_t(a.sparse.values.byteOffset),
+                                          element, element, out.sparse_count);
+        if (!out.sparse_indices.begin || !out.sparse_values.begin)
+            return out;
+    }
+    out.width = width;
+    out.component = a.componentType;
+    out.normalized = a.normalized;
+    out.count = a.count;
+    return out;
 }
 
 template <typename T> T value_at(const unsigned char* at, int i)
@@ -148,6 +194,29 @@ bool read_integer(const span& s, const unsigned char* at, uint32_t* out)
     }
 }
 
+// The element k < count: of the sparse ones if it is there, which stand in ascending order.
+const unsigned char* element_at(const span& s, size_t k)
+{
+    static const unsigned char zero[16] = {0};
+    size_t low = 0, high = s.sparse_count;
+    while (low < high)
+    {
+        size_t middle = (low + high) / 2;
+        span indices = {};
+        indices.component = s.sparse_component;
+        uint32_t at = 0;
+        if (!read_integer(indices, s.sparse_indices.begin + middle * s.sparse_indices.stride, &at))
+            break;
+        if (at == k)
+            return s.sparse_values.begin + middle * s.sparse_values.stride;
+        if (at < k)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return s.values.begin ? s.values.begin + k * s.values.stride : zero;
+}
+
 const char* nth_key(const std::map<std::string, int>& attributes, int i)
 {
     if (i < 0 || size_t(i) >= attributes.size())
@@ -200,6 +269,12 @@ int ty_gltf_mesh_count(const ty_gltf* gltf)
 int ty_gltf_primitive_count(const ty_gltf* gltf, int mesh)
 {
     return int(gltf->model.meshes[size_t(mesh)].primitives.size());
+}
+
+ty_gltf_primitive ty_gltf_get_primitive(const ty_gltf* gltf, int mesh, int primitive)
+{
+    const tinygltf::Primitive& p = gltf->model.meshes[size_t(mesh)].primitives[size_t(primitive)];
+    return {p.mode < 0 ? TINYGLTF_MODE_TRIANGLES : p.mode, p.material};
 }
 
 int ty_gltf_vertex_accessor(const ty_gltf* gltf, int mesh, int primitive, const char* semantic)
@@ -266,22 +341,33 @@ int ty_gltf_accessor_width(const ty_gltf* gltf, int accessor)
 
 bool ty_gltf_read_floats(const ty_gltf* gltf, int accessor, float* out)
 {
+    return ty_gltf_read_elements(gltf, accessor, nullptr, ty_gltf_accessor_count(gltf, accessor), out);
+}
+
+bool ty_gltf_read_elements(const ty_gltf* gltf, int accessor, const uint32_t* which, uint32_t count, float* out)
+{
     span s = span_of(gltf, accessor);
-    if (!s.begin)
+    if (s.count == 0)
         return false;
-    for (size_t k = 0; k < s.count; k++)
+    for (size_t k = 0; k < count; k++)
+    {
+        size_t index = which ? which[k] : k;
+        if (index >= s.count)
+            return false;
+        const unsigned char* at = element_at(s, index);
         for (int i = 0; i < s.width; i++)
-            *out++ = read_float(s, s.begin + k * s.stride, i);
+            *out++ = read_float(s, at, i);
+    }
     return true;
 }
 
 bool ty_gltf_read_integers(const ty_gltf* gltf, int accessor, uint32_t* out)
 {
     span s = span_of(gltf, accessor);
-    if (!s.begin || s.width != 1)
+    if (s.count == 0 || s.width != 1)
         return false;
     for (size_t k = 0; k < s.count; k++)
-        if (!read_integer(s, s.begin + k * s.stride, &out[k]))
+        if (!read_integer(s, element_at(s, k), &out[k]))
             return false;
     return true;
 }

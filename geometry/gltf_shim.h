@@ -20,6 +20,13 @@ extern "C"
     // Accessors are named by index; -1 = there is none. Semantic NULL = the triangle indices.
     int ty_gltf_mesh_count(const ty_gltf* gltf);
     int ty_gltf_primitive_count(const ty_gltf* gltf, int mesh);
+    typedef struct ty_gltf_primitive
+    {
+        int mode;     // 4 = triangles, 5 = a strip, 6 = a fan, below: points and lines
+        int material; // -1 = none
+    } ty_gltf_primitive;
+
+    ty_gltf_primitive ty_gltf_get_primitive(const ty_gltf* gltf, int mesh, int primitive);
     int ty_gltf_vertex_accessor(const ty_gltf* gltf, int mesh, int primitive, const char* semantic);
     // The i-th semantic in alphabetical order; NULL beyond the last. Borrowed.
     const char* ty_gltf_vertex_semantic(const ty_gltf* gltf, int mesh, int primitive, int i);
@@ -44,6 +51,8 @@ extern "C"
     // All elements, tightly packed, normalised integers brought to [-1, 1]. False when they reach beyond the file's
     // bytes.
     bool ty_gltf_read_floats(const ty_gltf* gltf, int accessor, float* out);
+    // The same of count elements named by which (NULL = the first count).
+    bool ty_gltf_read_elements(const ty_gltf* gltf, int accessor, const uint32_t* which, uint32_t count, float* out);
     // Scalars only. False as above, and when a float is not a whole number of 0..2^24.
     bool ty_gltf_read_integers(const ty_gltf* gltf, int accessor, uint32_t* out);
 

@@ -3,6 +3,8 @@
 #include "mesh_import.h"
 #include <strings.h>
 #include <tsuya/base/file.h>
+#include <tsuya/base/log.h>
+#include <tsuya/geometry/gltf.h>
 #include <tsuya/geometry/mesh_file.h>
 
 static const size_t LARGEST = (size_t)8 << 30; // bytes
@@ -16,6 +18,27 @@ static ty_status read_ply(const char* path, ty_mesh** out, ty_error* error)
         status = ty_ply_read_memory(path, bytes.data, bytes.size, out, error);
         ty_bytes_term(&bytes);
     }
+    return status;
+}
+
+static ty_status read_gltf(const char* path, ty_mesh** out, ty_error* error)
+{
+    ty_gltf_scene* scene;
+    ty_status status = ty_gltf_scene_open(path, NULL, NULL, &scene, error);
+    if (status != TY_OK)
+    {
+        return status;
+    }
+    for (int i = 0; i < scene->warning_count; i++)
+    {
+        ty_log(TY_LOG_WARNING, "%s: %s", path, scene->warnings[i]);
+    }
+    status = ty_gltf_scene_read_meshes(scene, error);
+    if (status == TY_OK)
+    {
+        status = ty_gltf_scene_merge(scene, out, error);
+    }
+    ty_gltf_scene_destroy(scene);
     return status;
 }
 
@@ -37,8 +60,8 @@ ty_status ty_mesh_read(const char* path, ty_mesh** out, ty_error* error)
     }
     if (strcasecmp(extension, "glb") == 0 || strcasecmp(extension, "gltf") == 0)
     {
-        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "use it as an aggregate: `aggregate: %s`", path);
+        return read_gltf(path, out, error);
     }
-    return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "unknown mesh type '.%s' (ply, obj, stl, fbx, dae, off)",
-                           extension);
+    return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0,
+                           "unknown mesh type '.%s' (ply, obj, stl, fbx, dae, off, glb, gltf)", extension);
 }

@@ -12,7 +12,8 @@ typedef struct ty_instance_attribute
 // Owned arrays. Instance order is part of the identity of the file.
 typedef struct ty_aggregate
 {
-    ty_mesh** prototypes; // owned
+    ty_mesh** prototypes;    // owned, unless:
+    bool borrows_prototypes; // somebody else destroys the meshes
     int prototype_count;
     uint32_t instance_count;
     ty_affine* transforms;     // [instance_count] prototype to aggregate space

@@ -39,8 +39,8 @@ typedef struct ty_mesh
     uint16_t* slots;   // [triangle_count] material slot, below slot_count (NULL = all 0)
     char** slot_names; // [slot_count], as the file names its materials; no two equal
     int slot_count;    // 0 = the file names none
-    char* recipe; // the text that made it, or NULL
-    char* hash;   // hex, or NULL
+    char* recipe;      // the text that made it, or NULL
+    char* hash;        // hex, or NULL
     ty_bounds bounds;
 } ty_mesh;
 

@@ -3,8 +3,9 @@
 #pragma once
 #include <tsuya/geometry/mesh.h>
 
-// By extension (.ply .obj .stl .fbx .dae .off). Validated, with welds, normals (the file's, or computed) and bounds.
-// Any fault of the file, a crash of the importer included, is TY_BAD_FILE with a reason (for PLY with line or byte).
+// By extension (.ply .obj .stl .fbx .dae .off .glb .gltf; of the last two all nodes as one). Validated, with welds,
+// normals (the file's, or computed) and bounds. Any fault of the file, a crash of the importer included, is TY_BAD_FILE
+// with a reason (for PLY with line or byte).
 TY_CHECKED ty_status ty_mesh_read(const char* path, ty_mesh** out, ty_error* error);
 
 // PLY from memory (ascii, binary little and big endian). Keeps every scalar vertex property that is not a position,
