@@ -122,13 +122,14 @@ static ty_status read_overrides(const ty_arguments* arguments, ty_scene_argument
     return status;
 }
 
-static ty_status read_aovs(const ty_arguments* arguments, unsigned* aovs)
+// `all` has light groups where the scene names any.
+static ty_status read_aovs(const ty_arguments* arguments, const ty_scene* scene, unsigned* aovs)
 {
-    static const char* const names[] = {"alpha", "Z", "N", "P", "albedo", "variance", "instance"};
+    static const char* const names[] = {"alpha", "Z", "N", "P", "albedo", "variance", "instance", "light"};
     const char* text = ty_argument_text(arguments, "aov", "all");
     if (strcmp(text, "all") == 0)
     {
-        *aovs = TY_AOV_ALL;
+        *aovs = TY_AOV_ALL | (scene->light_group_count > 1 ? TY_AOV_LIGHT : 0u);
         return TY_OK;
     }
     *aovs = 0;
@@ -136,7 +137,7 @@ static ty_status read_aovs(const ty_arguments* arguments, unsigned* aovs)
     {
         size_t length = strcspn(text, ",");
         unsigned found = 0;
-        for (unsigned i = 0; i < 7; i++)
+        for (unsigned i = 0; i < TY_PARAM_COUNT(names); i++)
         {
             if (strlen(names[i]) == length && strncmp(names[i], text, length) == 0)
             {
@@ -146,7 +147,7 @@ static ty_status read_aovs(const ty_arguments* arguments, unsigned* aovs)
         if (!found)
         {
             return ty_usage(arguments->command,
-                            "--aov: '%.*s' is none of alpha, Z, N, P, albedo, variance, instance, all, none",
+                            "--aov: '%.*s' is none of alpha, Z, N, P, albedo, variance, instance, light, all, none",
                             (int)length, text);
         }
         *aovs |= found;
@@ -241,8 +242,10 @@ static ty_status plan(const ty_arguments* arguments, const ty_scene* scene, rend
     int range[2];
     memcpy(job->setup.size, scene->film.size, sizeof job->setup.size);
     job->setup.half = scene->film.half;
+    job->setup.groups = scene->light_groups;
+    job->setup.group_count = scene->light_group_count;
     ty_status status = read_crop(arguments, scene->film.size, job->setup.crop);
-    status = status == TY_OK ? read_aovs(arguments, &job->setup.aovs) : status;
+    status = status == TY_OK ? read_aovs(arguments, scene, &job->setup.aovs) : status;
     status = status == TY_OK ? read_samples(arguments, scene->render.samples, range) : status;
     if (status == TY_OK && ty_argument_has(arguments, "time-limit"))
     {
@@ -468,7 +471,7 @@ static const ty_option options[] = {
     {"size", 0, "WxH", "picture size"},
     {"crop", 0, "x0,y0,x1,y1", "only these pixels (inclusive)"},
     {"seed", 0, "N", "seed of all random decisions"},
-    {"aov", 0, "LIST", "alpha,Z,N,P,albedo,variance,instance | all | none"},
+    {"aov", 0, "LIST", "alpha,Z,N,P,albedo,variance,instance,light | all | none"},
     {"integrator", 0, "X", "path, albedo, normal, curvature, ao"},
     {"time-limit", 0, "SECONDS", "stop after the pass that exceeds it"},
     {"trace", 0, "PATH", "fast, or reference: plain Embree instances"},

@@ -2,6 +2,8 @@
 // Sums per pixel in fixed point.
 #include "film.h"
 #include "sampler.h"
+#include <stdio.h>
+#include <string.h>
 #include <tsuya/base/memory.h>
 
 static ty_status check_setup(const ty_film_setup* setup, ty_error* error)
@@ -17,7 +19,17 @@ static ty_status check_setup(const ty_film_setup* setup, ty_error* error)
         setup->sample_end > TY_SAMPLER_MAX_SAMPLES)
         return ty_error_set(error, TY_USAGE, "samples %d-%d: expected a range within 0-%d", setup->sample_begin,
                             setup->sample_end - 1, TY_SAMPLER_MAX_SAMPLES - 1);
+    if (setup->aovs & TY_AOV_LIGHT && (setup->group_count < 1 || setup->group_count > TY_LIGHT_GROUPS))
+        return ty_error_set(error, TY_USAGE, "%d light groups: expected 1 to %d", setup->group_count, TY_LIGHT_GROUPS);
     return TY_OK;
+}
+
+static void name_groups(ty_film* film, const ty_film_setup* setup)
+{
+    film->setup.groups = NULL; // ours from now on
+    film->group_count = setup->aovs & TY_AOV_LIGHT ? (uint32_t)setup->group_count : 0u;
+    for (uint32_t g = 0; g < film->group_count; ++g)
+        snprintf(film->group_names[g], sizeof film->group_names[g], "%s", setup->groups[g]);
 }
 
 ty_status ty_film_create(const ty_film_setup* setup, ty_film** out, ty_error* error)
@@ -28,6 +40,7 @@ ty_status ty_film_create(const ty_film_setup* setup, ty_film** out, ty_error* er
         return status;
     ty_film* film = TY_ALLOC(ty_film, 1);
     film->setup = *setup;
+    name_groups(film, setup);
     film->width = setup->crop[2] - setup->crop[0] + 1;
     film->height = setup->crop[3] - setup->crop[1] + 1;
     size_t count = (size_t)film->width * (size_t)film->height;
@@ -37,9 +50,10 @@ ty_status ty_film_create(const ty_film_setup* setup, ty_film** out, ty_error* er
     film->normal = setup->aovs & TY_AOV_N ? TY_TRY_ALLOC(ty_plane_vector, count) : NULL;
     film->albedo = setup->aovs & TY_AOV_ALBEDO ? TY_TRY_ALLOC(ty_plane_vector, count) : NULL;
     film->first = setup->aovs & first ? TY_TRY_ALLOC(ty_plane_first, count) : NULL;
+    film->groups = film->group_count ? TY_TRY_ALLOC(ty_plane_vector, count * film->group_count) : NULL;
     if (!film->beauty || (setup->aovs & TY_AOV_VARIANCE && !film->moments) ||
         (setup->aovs & TY_AOV_N && !film->normal) || (setup->aovs & TY_AOV_ALBEDO && !film->albedo) ||
-        (setup->aovs & first && !film->first))
+        (setup->aovs & first && !film->first) || (film->group_count && !film->groups))
     {
         ty_film_destroy(film);
         return ty_error_set(error, TY_NO_MEMORY, "no memory for a film of %d x %d pixels", setup->size[0],
@@ -60,12 +74,14 @@ void ty_film_destroy(ty_film* film)
     ty_free(film->normal);
     ty_free(film->albedo);
     ty_free(film->first);
+    ty_free(film->groups);
     ty_free(film);
 }
 
-ty_pixel_sums ty_pixel_sums_make(void)
+ty_pixel_sums ty_pixel_sums_make(uint32_t group_count)
 {
-    return (ty_pixel_sums){.first_sample = TY_FILM_NO_SAMPLE, .first_depth = TY_FILM_Z_NONE};
+    return (ty_pixel_sums){
+        .group_count = group_count, .first_sample = TY_FILM_NO_SAMPLE, .first_depth = TY_FILM_Z_NONE};
 }
 
 // Nearest multiple of 2^-30, ties to even; clamped, which the caller may want to know.
@@ -120,6 +136,8 @@ ty_sample_fate ty_pixel_sums_add(ty_pixel_sums* sums, const ty_film_sample* s, u
     sums->radiance[0] += (uint64_t)fixed_from_float(s->radiance.r, &clamped);
     sums->radiance[1] += (uint64_t)fixed_from_float(s->radiance.g, &clamped);
     sums->radiance[2] += (uint64_t)fixed_from_float(s->radiance.b, &clamped);
+    for (uint32_t g = 0; g < sums->group_count; ++g)
+        add_vector(sums->group[g], s->group[g].r, s->group[g].g, s->group[g].b);
     int64_t y = fixed_from_float(ty_luminance(s->radiance), &luminance_clamped);
     uint64_t magnitude = (uint64_t)(y < 0 ? -y : y);
     sums->luminance += (uint64_t)y;
@@ -142,6 +160,8 @@ void ty_film_commit(ty_film* film, int x, int y, const ty_pixel_sums* sums)
     film->beauty[i].covered += sums->covered;
     commit_vector(film->normal, i, sums->normal);
     commit_vector(film->albedo, i, sums->albedo);
+    for (uint32_t g = 0; g < film->group_count; ++g)
+        commit_vector(film->groups, i * film->group_count + g, sums->group[g]);
     if (film->moments)
     {
         film->moments[i].luminance += sums->luminance;
@@ -155,7 +175,7 @@ void ty_film_commit(ty_film* film, int x, int y, const ty_pixel_sums* sums)
 ty_pixel_sums ty_film_pixel(const ty_film* film, int x, int y)
 {
     size_t i = ty_film_index(film, x, y);
-    ty_pixel_sums sums = ty_pixel_sums_make();
+    ty_pixel_sums sums = ty_pixel_sums_make(film->group_count);
     sums.samples = film->beauty[i].samples;
     sums.covered = film->beauty[i].covered;
     for (int c = 0; c < 3; ++c)
@@ -164,6 +184,8 @@ ty_pixel_sums ty_film_pixel(const ty_film* film, int x, int y)
         sums.normal[c] = film->normal ? film->normal[i].sum[c] : 0;
         sums.albedo[c] = film->albedo ? film->albedo[i].sum[c] : 0;
     }
+    for (uint32_t g = 0; g < film->group_count; ++g)
+        memcpy(sums.group[g], film->groups[i * film->group_count + g].sum, sizeof sums.group[g]);
     if (film->moments)
     {
         sums.luminance = film->moments[i].luminance;

@@ -14,6 +14,7 @@ __extension__ typedef unsigned __int128 ty_u128;
 typedef struct ty_film_sample
 {
     ty_rgb radiance;
+    ty_rgb group[TY_LIGHT_GROUPS]; // its parts by light group, where the film has those
     ty_rgb albedo;
     ty_vec3 normal;
     ty_vec3 position;
@@ -23,6 +24,14 @@ typedef struct ty_film_sample
     bool covered;      // a surface or a visible area light
 } ty_film_sample;
 
+// Light of a group, -1 = nobody asks.
+static inline void ty_film_sample_add(ty_film_sample* sample, int group, ty_rgb light)
+{
+    sample->radiance = ty_rgb_add(sample->radiance, light);
+    if (group >= 0)
+        sample->group[group] = ty_rgb_add(sample->group[group], light);
+}
+
 // The sums are kept as unsigned numbers modulo 2^64 (2^128): adding never overflows, whatever a damaged part holds.
 typedef struct ty_pixel_sums
 {
@@ -31,6 +40,8 @@ typedef struct ty_pixel_sums
     uint64_t luminance;
     uint64_t normal[3];
     uint64_t albedo[3];
+    uint64_t group[TY_LIGHT_GROUPS][3]; // as radiance
+    uint32_t group_count;
     uint32_t samples, covered;
     // The hit of the lowest sample index that has one.
     uint32_t first_sample; // TY_FILM_NO_SAMPLE = none
@@ -79,9 +90,12 @@ struct ty_film
     ty_plane_vector* normal;   // with TY_AOV_N
     ty_plane_vector* albedo;   // with TY_AOV_ALBEDO
     ty_plane_first* first;     // with TY_AOV_Z, P or INSTANCE
+    ty_plane_vector* groups;   // [pixel][group_count], with TY_AOV_LIGHT
+    char group_names[TY_LIGHT_GROUPS][TY_LIGHT_GROUP_NAME + 1];
+    uint32_t group_count; // 0 without TY_AOV_LIGHT
 };
 
-ty_pixel_sums ty_pixel_sums_make(void);
+ty_pixel_sums ty_pixel_sums_make(uint32_t group_count);
 // sample_index: global, for the first hit.
 ty_sample_fate ty_pixel_sums_add(ty_pixel_sums* sums, const ty_film_sample* sample, uint32_t sample_index);
 
@@ -113,6 +127,7 @@ void ty_film_add_part_channels(const ty_film* film, ty_exr* exr);
 TY_CHECKED ty_status ty_film_from_part(const ty_exr* exr, const char* name, ty_film** out, ty_error* error);
 void ty_film_add_range(int sample_begin, int sample_end, ty_exr* exr); // "tsuya/samples"
 
+#define TY_GROUP_CHANNEL "light."
 #define TY_KEY_SAMPLES "tsuya/samples"
 #define TY_KEY_PARTIAL "tsuya/partial"
 #define TY_KEY_PART "tsuya/part"

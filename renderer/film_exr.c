@@ -102,6 +102,26 @@ static void write_pixel(const ty_pixel_sums* sums, const ty_exr_type types[CHANN
     }
 }
 
+// The beauty by light groups: "light.NAME.R" and so on.
+static void add_groups(const ty_film* film, ty_exr* exr)
+{
+    ty_exr_type type = film->setup.half ? TY_EXR_HALF : TY_EXR_FLOAT;
+    size_t count = (size_t)film->width * (size_t)film->height;
+    for (uint32_t g = 0; g < film->group_count; ++g)
+        for (int c = 0; c < 3; ++c)
+        {
+            char name[64];
+            snprintf(name, sizeof name, TY_GROUP_CHANNEL "%s.%c", film->group_names[g], "RGB"[c]);
+            float* pixels = ty_exr_add_channel(exr, name, type);
+            for (size_t i = 0; i < count; ++i)
+            {
+                uint64_t sum = film->groups[i * film->group_count + g].sum[c];
+                float value = ty_fixed_mean(sum, film->beauty[i].samples);
+                pixels[i] = type == TY_EXR_HALF ? ty_clamp(value, -HALF_MAX, HALF_MAX) : value;
+            }
+        }
+}
+
 void ty_film_add_channels(const ty_film* film, bool partial, ty_exr* exr)
 {
     void* pixels[CHANNEL_COUNT] = {0};
@@ -120,6 +140,7 @@ void ty_film_add_channels(const ty_film* film, bool partial, ty_exr* exr)
             ty_pixel_sums sums = ty_film_pixel(film, x, y);
             write_pixel(&sums, types, pixels, ty_film_index(film, x, y));
         }
+    add_groups(film, exr);
 }
 
 void ty_film_add_range(int sample_begin, int sample_end, ty_exr* exr)

@@ -81,7 +81,9 @@ static ty_status check_same(const ty_exr* whole, const ty_film* sum, const ty_ex
     const ty_film_setup *a = &sum->setup, *b = &film->setup;
     if (memcmp(a->size, b->size, sizeof a->size) != 0 || memcmp(a->crop, b->crop, sizeof a->crop) != 0)
         return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "its size or crop differs from the first part's");
-    if (a->aovs != b->aovs || a->half != b->half)
+    bool same_groups = sum->group_count == film->group_count &&
+                       memcmp(sum->group_names, film->group_names, sizeof sum->group_names) == 0;
+    if (a->aovs != b->aovs || a->half != b->half || !same_groups)
         return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "its channels differ from the first part's");
     return TY_OK;
 }

@@ -35,23 +35,23 @@ static const sum_field fields[] = {
 enum
 {
     FIELD_COUNT = sizeof fields / sizeof fields[0],
-    WORD_COUNT = 27
+    WORD_COUNT = 27 + TY_LIGHT_GROUPS * 3 * 2
 };
 
 typedef struct word
 {
-    const sum_field* from;
-    int index;
+    size_t offset;    // of its field
+    int words, index; // of the field, and which of them
     uint32_t* pixels;
 } word;
 
 static uint32_t get_word(const ty_pixel_sums* sums, const word* w)
 {
-    const unsigned char* p = (const unsigned char*)sums + w->from->offset;
+    const unsigned char* p = (const unsigned char*)sums + w->offset;
     uint32_t narrow;
     uint64_t wide;
     ty_u128 widest;
-    switch (w->from->words)
+    switch (w->words)
     {
     case 1:
         memcpy(&narrow, p, sizeof narrow);
@@ -68,10 +68,10 @@ static uint32_t get_word(const ty_pixel_sums* sums, const word* w)
 // Words start from zero sums and are put once each.
 static void put_word(ty_pixel_sums* sums, const word* w, uint32_t value)
 {
-    unsigned char* p = (unsigned char*)sums + w->from->offset;
+    unsigned char* p = (unsigned char*)sums + w->offset;
     uint64_t wide;
     ty_u128 widest;
-    switch (w->from->words)
+    switch (w->words)
     {
     case 1:
         memcpy(p, &value, sizeof value);
@@ -89,16 +89,33 @@ static void put_word(ty_pixel_sums* sums, const word* w, uint32_t value)
     }
 }
 
-static int list_words(unsigned aovs, word words[WORD_COUNT], char names[WORD_COUNT][64])
+static int add_words(word* words, char names[][64], int count, const char* name, size_t offset, int width)
+{
+    for (int i = 0; i < width; ++i, ++count)
+    {
+        TY_ASSERT(count < WORD_COUNT);
+        words[count] = (word){offset, width, i, NULL};
+        snprintf(names[count], 64, "part.%s.%d", name, i);
+    }
+    return count;
+}
+
+// group_names: [group_count]
+static int list_words(unsigned aovs, const char* const* group_names, int group_count, word words[WORD_COUNT],
+                      char names[WORD_COUNT][64])
 {
     int count = 0;
     for (int f = 0; f < FIELD_COUNT; ++f)
-        for (int i = 0; i < fields[f].words && (!fields[f].aov || aovs & fields[f].aov); ++i)
+        if (!fields[f].aov || aovs & fields[f].aov)
+            count = add_words(words, names, count, fields[f].name, fields[f].offset, fields[f].words);
+    for (int g = 0; g < group_count; ++g)
+        for (int c = 0; c < 3; ++c)
         {
-            words[count] = (word){&fields[f], i, NULL};
-            snprintf(names[count++], 64, "part.%s.%d", fields[f].name, i);
+            char name[56];
+            snprintf(name, sizeof name, TY_GROUP_CHANNEL "%.*s.%c", TY_LIGHT_GROUP_NAME, group_names[g], "RGB"[c]);
+            size_t offset = offsetof(ty_pixel_sums, group) + (size_t)(3 * g + c) * sizeof(uint64_t);
+            count = add_words(words, names, count, name, offset, 2);
         }
-    TY_ASSERT(count <= WORD_COUNT);
     return count;
 }
 
@@ -106,7 +123,10 @@ void ty_film_add_part_channels(const ty_film* film, ty_exr* exr)
 {
     word words[WORD_COUNT];
     char names[WORD_COUNT][64];
-    int count = list_words(film->setup.aovs, words, names);
+    const char* groups[TY_LIGHT_GROUPS];
+    for (uint32_t g = 0; g < film->group_count; ++g)
+        groups[g] = film->group_names[g];
+    int count = list_words(film->setup.aovs, groups, (int)film->group_count, words, names);
     for (int w = 0; w < count; ++w)
         words[w].pixels = ty_exr_add_channel(exr, names[w], TY_EXR_UINT);
     const int* crop = film->setup.crop;
@@ -154,6 +174,26 @@ static ty_status read_setup(const ty_exr* exr, const char* name, ty_film_setup* 
     memcpy(setup->crop, exr->data_window, sizeof setup->crop);
     for (size_t i = 0; i < sizeof marks / sizeof marks[0]; ++i)
         setup->aovs |= ty_exr_find_channel(exr, marks[i].channel) ? marks[i].aov : 0u;
+    return TY_OK;
+}
+
+// The light groups by their first channels, "light.NAME.R", in the order of the file.
+static ty_status read_groups(const ty_exr* exr, const char* name, char groups[][TY_LIGHT_GROUP_NAME + 1], int* count,
+                             ty_error* error)
+{
+    const size_t head = strlen(TY_GROUP_CHANNEL), tail = strlen(".R");
+    *count = 0;
+    for (int i = 0; i < exr->channel_count; ++i)
+    {
+        const char* channel = exr->channels[i].name;
+        size_t length = strlen(channel);
+        if (length <= head + tail || strncmp(channel, TY_GROUP_CHANNEL, head) != 0 ||
+            strcmp(channel + length - tail, ".R") != 0)
+            continue;
+        if (*count == TY_LIGHT_GROUPS || length - head - tail > TY_LIGHT_GROUP_NAME)
+            return ty_error_set_at(error, TY_BAD_FILE, name, 0, 0, "its light groups are damaged");
+        snprintf(groups[(*count)++], TY_LIGHT_GROUP_NAME + 1, "%.*s", (int)(length - head - tail), channel + head);
+    }
     return TY_OK;
 }
 
@@ -213,9 +253,17 @@ ty_status ty_film_from_part(const ty_exr* exr, const char* name, ty_film** out, 
     ty_status status = read_setup(exr, name, &setup, error);
     if (status)
         return status;
+    char group_names[TY_LIGHT_GROUPS][TY_LIGHT_GROUP_NAME + 1];
+    const char* groups[TY_LIGHT_GROUPS];
+    if ((status = read_groups(exr, name, group_names, &setup.group_count, error)))
+        return status;
+    for (int g = 0; g < setup.group_count; ++g)
+        groups[g] = group_names[g];
+    setup.groups = groups;
+    setup.aovs |= setup.group_count ? TY_AOV_LIGHT : 0u;
     word words[WORD_COUNT];
     char names[WORD_COUNT][64];
-    int count = list_words(setup.aovs, words, names);
+    int count = list_words(setup.aovs, groups, setup.group_count, words, names);
     for (int w = 0; w < count; ++w)
         words[w].pixels = (uint32_t*)need(exr, name, names[w], TY_EXR_UINT, &status, error);
     first_channels first = find_first(exr, name, setup.aovs, &status, error);

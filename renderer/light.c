@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The set of lights: which one to sample, and what a ray meets of them.
+// The set of lights: sampled from a point, and met by a ray.
 #include "light.h"
 #include <tsuya/base/memory.h>
 
+static unsigned visible_to(const ty_light_def* light)
+{
+    const ty_visible_def* def = &light->visible;
+    return (def->camera && light->camera_visible ? TY_MASK_CAMERA : 0u) | (def->diffuse ? TY_MASK_DIFFUSE : 0u) |
+           (def->glossy ? TY_MASK_GLOSSY : 0u) | (def->transmission ? TY_MASK_TRANSMISSION : 0u);
+}
+
 static void light_init(ty_light* light, const ty_light_def* def, const ty_texture* image)
 {
-    *light = (ty_light){.kind = (ty_light_kind)def->kind,
-                        .camera_visible = def->camera_visible,
-                        .value = def->radiance,
-                        .center = def->center,
-                        .radius = def->radius};
     switch (light->kind)
     {
     case TY_LIGHT_ENVIRONMENT:
@@ -18,106 +20,93 @@ static void light_init(ty_light* light, const ty_light_def* def, const ty_textur
     case TY_LIGHT_RECTANGLE:
         ty_light_rectangle_init(light, def);
         break;
-    case TY_LIGHT_SPHERE:
+    case TY_LIGHT_DISK:
+        ty_light_disk_init(light, def);
+        break;
+    case TY_LIGHT_CYLINDER:
+        ty_light_cylinder_init(light, def);
         break;
     case TY_LIGHT_POINT:
-        light->value = def->intensity;
+    case TY_LIGHT_SPOT:
+        ty_light_spot_init(light, def, image);
         break;
     case TY_LIGHT_DIRECTIONAL:
-        light->value = def->irradiance;
-        light->frame.n = ty_normalize(ty_sub(def->center, def->target));
+        ty_light_directional_init(light, ty_sub(def->center, def->target), def->irradiance, def->angle);
         break;
-    }
-}
-
-// What a light sends into the scene, roughly: watts of luminance. 0 = it is left to the rays.
-static float light_power(const ty_light* light, float scene_radius)
-{
-    float y = ty_luminance(light->value), cross_section = TY_PI * scene_radius * scene_radius;
-    switch (light->kind)
-    {
-    case TY_LIGHT_ENVIRONMENT:
-        return light->distribution ? 4.0f * TY_PI * cross_section * ty_light_environment_mean(light) : 0.0f;
-    case TY_LIGHT_RECTANGLE:
-        return y * TY_PI * light->area;
     case TY_LIGHT_SPHERE:
-        return y * TY_PI * 4.0f * TY_PI * light->radius * light->radius;
-    case TY_LIGHT_POINT:
-        return y * 4.0f * TY_PI;
-    case TY_LIGHT_DIRECTIONAL:
-        return y * cross_section;
-    }
-    return 0.0f;
-}
-
-// Probabilities: three quarters by power, one quarter evenly, so that a near weak light is not starved by a far strong
-// one.
-static void choose_probabilities(ty_light_set* set, float scene_radius)
-{
-    double total = 0.0;
-    for (int i = 0; i < set->count; ++i)
-    {
-        float power = light_power(&set->lights[i], scene_radius);
-        set->lights[i].probability = isfinite(power) ? power : TY_FLOAT_MAX;
-        total += (double)set->lights[i].probability;
-        if (power > 0.0f)
-            set->chosen[set->chosen_count++] = i;
-    }
-    double sum = 0.0;
-    for (int i = 0; i < set->chosen_count; ++i)
-    {
-        ty_light* light = &set->lights[set->chosen[i]];
-        light->probability = (float)(0.75 * (double)light->probability / total + 0.25 / set->chosen_count);
-        sum += (double)light->probability;
-        set->cumulative[i] = (float)sum;
+    case TY_LIGHT_SKY: // with its sun
+        break;
     }
 }
 
-void ty_light_set_init(ty_light_set* set, const ty_scene* scene)
+// A sky's sun stands behind it.
+static void add_lights(ty_light_set* set, int source, bool grouped)
 {
-    *set = (ty_light_set){.count = scene->light_count};
-    set->lights = TY_ALLOC(ty_light, scene->light_count);
-    set->chosen = TY_ALLOC(int, scene->light_count);
-    set->cumulative = TY_ALLOC(float, scene->light_count);
+    const ty_scene* scene = set->scene;
+    const ty_light_def* def = &scene->lights[source];
+    ty_light* light = &set->lights[set->light_count];
+    *light = (ty_light){.kind = (ty_light_kind)def->kind,
+                        .source = source,
+                        .group = grouped ? def->group_index : -1,
+                        .visible = visible_to(def),
+                        .shadows = def->shadows,
+                        .value = def->radiance,
+                        .center = def->center,
+                        .radius = def->radius};
+    set->light_count += 1 + (light->kind == TY_LIGHT_SKY);
+    set->restricted |= (light->visible | TY_MASK_CAMERA) != TY_MASK_SEEN;
+    light[light->kind == TY_LIGHT_SKY] = *light;
+    if (light->kind == TY_LIGHT_SKY)
+        ty_light_sky_init(light, light + 1, def);
+    else
+        light_init(light, def, scene->light_images ? scene->light_images[source] : NULL);
+}
+
+// One selection for each set of lights that lights some object.
+static void add_selections(ty_light_set* set, float scene_radius)
+{
+    const ty_scene* scene = set->scene;
+    set->selection_count = scene->light_link_count > 0 ? scene->light_link_count : 1;
+    set->selections = TY_ALLOC(ty_light_selection, set->selection_count);
+    ty_light_selection_init(&set->selections[0], set, NULL, scene_radius);
+    bool* lit = TY_ALLOC(bool, set->light_count + set->mesh_count);
+    for (int link = 1; link < set->selection_count; ++link)
+    {
+        const bool* marks = scene->light_links[link];
+        for (int i = 0; i < set->light_count; ++i)
+            lit[i] = marks[set->lights[i].source];
+        for (int i = 0; i < set->mesh_count; ++i)
+            lit[set->light_count + i] = marks[scene->light_count + (int)set->meshes[i].object];
+        ty_light_selection_init(&set->selections[link], set, lit, scene_radius);
+    }
+    ty_free(lit);
+}
+
+void ty_light_set_init(ty_light_set* set, const ty_scene* scene, bool grouped)
+{
+    *set = (ty_light_set){.scene = scene, .grouped = grouped};
+    set->lights = TY_ALLOC(ty_light, 2 * scene->light_count);
     for (int i = 0; i < scene->light_count; ++i)
-    {
-        light_init(&set->lights[i], &scene->lights[i], scene->light_images ? scene->light_images[i] : NULL);
-        set->has_shapes |= set->lights[i].kind == TY_LIGHT_RECTANGLE || set->lights[i].kind == TY_LIGHT_SPHERE;
-    }
+        add_lights(set, i, grouped);
+    ty_light_meshes_init(set);
     ty_bounds bounds = ty_world_bounds(scene->world);
     float radius = 0.5f * ty_length(ty_sub(bounds.high, bounds.low));
-    choose_probabilities(set, isfinite(radius) && radius > 0.0f ? radius : 1.0f);
+    add_selections(set, isfinite(radius) && radius > 0.0f ? radius : 1.0f);
 }
 
 void ty_light_set_term(ty_light_set* set)
 {
-    for (int i = 0; i < set->count; ++i)
+    for (int i = 0; i < set->light_count; ++i)
         ty_distribution_destroy(set->lights[i].distribution);
+    for (int i = 0; i < set->selection_count; ++i)
+        ty_light_selection_term(&set->selections[i]);
+    ty_light_meshes_term(set);
+    ty_free(set->selections);
     ty_free(set->lights);
-    ty_free(set->chosen);
-    ty_free(set->cumulative);
     *set = (ty_light_set){0};
 }
 
-static bool point_sample(const ty_light* light, ty_vec3 p, ty_light_sample* out)
-{
-    ty_vec3 d = ty_sub(light->center, p);
-    float distance_sqr = ty_length_sqr(d);
-    if (!(distance_sqr > 0.0f))
-        return false;
-    out->distance = sqrtf(distance_sqr);
-    out->wi = ty_mul(d, 1.0f / out->distance);
-    out->radiance = ty_rgb_scale(light->value, 1.0f / distance_sqr);
-    out->pdf = 1.0f;
-    out->delta = true;
-    return true;
-}
-
-static bool directional_sample(const ty_light* light, ty_light_sample* out)
-{
-    *out = (ty_light_sample){light->frame.n, TY_FLOAT_MAX, light->value, 1.0f, true};
-    return true;
-}
+// --- sampling ---
 
 static bool light_sample(const ty_light* light, ty_vec3 p, ty_vec2 u, ty_light_sample* out)
 {
@@ -127,73 +116,228 @@ static bool light_sample(const ty_light* light, ty_vec3 p, ty_vec2 u, ty_light_s
         return ty_light_environment_sample(light, u, out);
     case TY_LIGHT_RECTANGLE:
         return ty_light_rectangle_sample(light, p, u, out);
+    case TY_LIGHT_DISK:
+        return ty_light_disk_sample(light, p, u, out);
     case TY_LIGHT_SPHERE:
         return ty_light_sphere_sample(light, p, u, out);
+    case TY_LIGHT_CYLINDER:
+        return ty_light_cylinder_sample(light, p, u, out);
     case TY_LIGHT_POINT:
-        return point_sample(light, p, out);
+    case TY_LIGHT_SPOT:
+        return ty_light_spot_sample(light, p, out);
     case TY_LIGHT_DIRECTIONAL:
-        return directional_sample(light, out);
+        return ty_light_directional_sample(light, u, out);
+    case TY_LIGHT_SKY: // smooth: found by the rays
+        break;
     }
     return false;
 }
 
-bool ty_light_set_sample(const ty_light_set* set, ty_vec3 p, float u_choice, ty_vec2 u, ty_light_sample* out)
+// 53 bits of which the upper 24 are u's: the steps of a deep tree use up what one float has.
+static double refine(float u, ty_vec2 from)
 {
-    if (set->chosen_count == 0)
+    uint32_t x = (uint32_t)(from.x * 0x1p24f), y = (uint32_t)(from.y * 0x1p24f);
+    return (double)u + (double)(ty_mix32(x ^ ty_mix32(y + 0x9e3779b9u)) >> 4) * 0x1p-52;
+}
+
+bool ty_light_set_sample(const ty_light_set* set, const ty_light_point* at, float u_choice, ty_vec2 u,
+                         ty_light_sample* out)
+{
+    const ty_light_selection* s = &set->selections[at->link];
+    if (s->chosen_count == 0 && !s->tree)
         return false;
-    int i = 0;
-    while (i < set->chosen_count - 1 && u_choice >= set->cumulative[i])
-        ++i;
-    const ty_light* light = &set->lights[set->chosen[i]];
-    if (!light_sample(light, p, u, out))
+    float probability;
+    double rest;
+    int emitter = ty_light_select(set, at, refine(u_choice, u), &probability, &rest);
+    if (emitter < 0)
         return false;
-    out->pdf *= light->probability;
+    out->shadows = true;
+    out->visible = TY_MASK_SEEN;
+    if (emitter >= set->light_count)
+    {
+        const ty_light_mesh* mesh = &set->meshes[emitter - set->light_count];
+        if (!ty_light_mesh_sample(set, mesh, at, rest, u, out))
+            return false;
+        out->group = ty_light_set_object_group(set, mesh->object);
+    }
+    else
+    {
+        const ty_light* light = &set->lights[emitter];
+        if (!light_sample(light, at->position, u, out))
+            return false;
+        out->group = light->group;
+        out->shadows = light->shadows;
+        out->visible = light->visible;
+    }
+    out->pdf *= probability;
     return out->pdf > 0.0f;
 }
 
-static float view_weight(const ty_light* light, const ty_light_view* view, float pdf)
-{
-    return view->full ? 1.0f : ty_power_heuristic(view->pdf, light->probability * pdf);
-}
+// --- what rays meet ---
 
-static ty_rgb shape_along(const ty_light* light, const ty_ray* ray, float t_max, const ty_light_view* view,
-                          bool* covered)
+// Share of a light that a ray met, where light sampling has a density of its own for the direction; 0 = it has none.
+static float weight(const ty_light_set* set, int emitter, const ty_light_view* view, float pdf)
 {
-    bool rectangle = light->kind == TY_LIGHT_RECTANGLE;
-    float t;
-    bool met = rectangle ? ty_light_rectangle_meet(light, ray, &t) : ty_light_sphere_meet(light, ray, &t);
-    if (!met || t < ray->t_min || t * TY_LIGHT_REACH >= t_max)
-        return (ty_rgb){0};
-    *covered = true;
     if (view->full)
-        return light->value;
-    float pdf =
-        rectangle ? ty_light_rectangle_pdf(light, view->from, ray->direction) : ty_light_sphere_pdf(light, view->from);
-    return ty_rgb_scale(light->value, view_weight(light, view, pdf));
+        return 1.0f;
+    float other = ty_light_select_probability(set, &view->from, emitter) * pdf;
+    switch ((ty_light_sampling)set->scene->render.light_sampling)
+    {
+    case TY_LIGHT_SAMPLING_LIGHT:
+        return other > 0.0f ? 0.0f : 1.0f;
+    case TY_LIGHT_SAMPLING_BSDF:
+        return 1.0f;
+    case TY_LIGHT_SAMPLING_MIS:
+        break;
+    }
+    return ty_power_heuristic(view->pdf, other);
 }
 
-static ty_rgb environment_along(const ty_light* light, const ty_ray* ray, const ty_light_view* view)
+static bool shape_meet(const ty_light* light, const ty_ray* ray, float* t)
 {
+    switch (light->kind)
+    {
+    case TY_LIGHT_RECTANGLE:
+        return ty_light_rectangle_meet(light, ray, t);
+    case TY_LIGHT_DISK:
+        return ty_light_disk_meet(light, ray, t);
+    case TY_LIGHT_CYLINDER:
+        return ty_light_cylinder_meet(light, ray, t);
+    default:
+        return ty_light_sphere_meet(light, ray, t);
+    }
+}
+
+static float shape_pdf(const ty_light* light, ty_vec3 from, ty_vec3 wi)
+{
+    switch (light->kind)
+    {
+    case TY_LIGHT_RECTANGLE:
+        return ty_light_rectangle_pdf(light, from, wi);
+    case TY_LIGHT_DISK:
+        return ty_light_disk_pdf(light, from, wi);
+    case TY_LIGHT_CYLINDER:
+        return ty_light_cylinder_pdf(light, from, wi);
+    default:
+        return ty_light_sphere_pdf(light, from);
+    }
+}
+
+// out NULL: only asks.
+static bool shape_along(const ty_light_set* set, int index, const ty_ray* ray, float t_max, const ty_light_view* view,
+                        ty_rgb beta, ty_film_sample* out)
+{
+    const ty_light* light = &set->lights[index];
+    float t;
+    if (!(light->visible & view->seen) || !shape_meet(light, ray, &t) || t < ray->t_min ||
+        (t * TY_LIGHT_REACH >= t_max && (light->shadows || view->seen == TY_MASK_CAMERA)))
+        return false;
+    if (!out)
+        return true;
+    float w = view->full ? 1.0f : weight(set, index, view, shape_pdf(light, view->from.position, ray->direction));
+    ty_film_sample_add(out, light->group, ty_rgb_scale(ty_rgb_mul(beta, light->value), w));
+    return true;
+}
+
+static bool box_met(const ty_light_node* node, const ty_ray* ray, ty_vec3 inverse)
+{
+    ty_vec3 a = ty_mul3(ty_sub(node->low, ray->origin), inverse), b = ty_mul3(ty_sub(node->high, ray->origin), inverse);
+    ty_vec3 low = ty_min3(a, b), high = ty_max3(a, b);
+    float enter = ty_max(low.x, ty_max(low.y, low.z)), leave = ty_min(high.x, ty_min(high.y, high.z));
+    return enter <= leave * 1.00001f && leave >= 0.0f;
+}
+
+// No light hides another: every one along the ray counts.
+static bool shapes_along(const ty_light_set* set, const ty_light_selection* s, const ty_ray* ray, float t_max,
+                         const ty_light_view* view, ty_rgb beta, ty_film_sample* out)
+{
+    bool met = false;
+    for (int i = 0; i < s->shape_count && !s->shaping; ++i)
+        met |= shape_along(set, s->shapes[i], ray, t_max, view, beta, out);
+    if (!s->shaping)
+        return met;
+    const ty_light_node* nodes = s->shaping->nodes;
+    ty_vec3 d = ray->direction; // a zero would make nan of a border at the origin
+    ty_vec3 inverse = {1.0f / (d.x != 0.0f ? d.x : 1e-30f), 1.0f / (d.y != 0.0f ? d.y : 1e-30f),
+                       1.0f / (d.z != 0.0f ? d.z : 1e-30f)};
+    uint32_t stack[64], index = 0;
+    int depth = 0;
+    for (;;)
+    {
+        if (box_met(&nodes[index], ray, inverse))
+        {
+            if (!(nodes[index].child & TY_LIGHT_LEAF))
+            {
+                stack[depth++] = nodes[index].child;
+                ++index;
+                continue;
+            }
+            met |= shape_along(set, (int)(nodes[index].child & ~TY_LIGHT_LEAF), ray, t_max, view, beta, out);
+        }
+        if (depth == 0)
+            return met;
+        index = stack[--depth];
+    }
+}
+
+static ty_rgb sky_along(const ty_light_set* set, int index, const ty_ray* ray, const ty_light_view* view)
+{
+    const ty_light* light = &set->lights[index];
+    if (!(light->visible & view->seen))
+        return (ty_rgb){0};
+    if (light->kind == TY_LIGHT_SKY)
+        return ty_light_sky_radiance(light, ray->direction);
+    if (light->kind == TY_LIGHT_DIRECTIONAL)
+    {
+        if (!ty_light_directional_covers(light, ray->direction))
+            return (ty_rgb){0};
+        return ty_rgb_scale(light->value, weight(set, index, view, ty_light_directional_pdf(light)));
+    }
     ty_rgb radiance = ty_light_environment_radiance(light, ray->direction);
     if (view->full || !light->distribution)
         return radiance;
-    return ty_rgb_scale(radiance, view_weight(light, view, ty_light_environment_pdf(light, ray->direction)));
+    return ty_rgb_scale(radiance, weight(set, index, view, ty_light_environment_pdf(light, ray->direction)));
 }
 
-ty_rgb ty_light_set_along(const ty_light_set* set, const ty_ray* ray, float t, const ty_light_view* view, bool* covered)
+bool ty_light_set_along(const ty_light_set* set, const ty_ray* ray, float t, const ty_light_view* view, ty_rgb beta,
+                        ty_film_sample* out)
 {
-    ty_rgb sum = {0};
-    if (t < TY_FLOAT_MAX && !set->has_shapes)
-        return sum;
-    for (int i = 0; i < set->count; ++i)
+    const ty_light_selection* s = &set->selections[view->from.link];
+    bool met = s->shape_count > 0 && shapes_along(set, s, ray, t, view, beta, out);
+    for (int i = 0; i < s->sky_count; ++i)
     {
-        const ty_light* light = &set->lights[i];
-        if (view->camera && !light->camera_visible)
-            continue;
-        if (light->kind == TY_LIGHT_RECTANGLE || light->kind == TY_LIGHT_SPHERE)
-            sum = ty_rgb_add(sum, shape_along(light, ray, t, view, covered));
-        else if (light->kind == TY_LIGHT_ENVIRONMENT && t == TY_FLOAT_MAX)
-            sum = ty_rgb_add(sum, environment_along(light, ray, view));
+        const ty_light* sky = &set->lights[s->skies[i]];
+        if (t == TY_FLOAT_MAX || (!sky->shadows && view->seen != TY_MASK_CAMERA))
+            ty_film_sample_add(out, sky->group, ty_rgb_mul(beta, sky_along(set, s->skies[i], ray, view)));
     }
-    return sum;
+    return met;
+}
+
+bool ty_light_set_shines(const ty_light_set* set, const ty_ray* ray, const ty_light_view* view)
+{
+    const ty_light_selection* s = &set->selections[view->from.link];
+    const ty_rgb one = {1.0f, 1.0f, 1.0f};
+    for (int i = 0; i < s->sky_count; ++i)
+        if (!ty_rgb_is_black(sky_along(set, s->skies[i], ray, view)))
+            return true;
+    return s->shape_count > 0 && shapes_along(set, s, ray, TY_FLOAT_MAX, view, one, NULL);
+}
+
+float ty_light_set_weight(const ty_light_set* set, const ty_surface_point* met, const ty_light_view* view, ty_vec3 wi)
+{
+    const ty_scene* scene = set->scene;
+    if (view->from.link && !scene->light_links[view->from.link][scene->light_count + (int)met->object])
+        return 0.0f;
+    if (view->full)
+        return 1.0f;
+    uint32_t first = set->first_mesh[met->object];
+    if (first == TY_NONE)
+        return 1.0f;
+    int mesh = (int)(first + met->instance);
+    return weight(set, set->light_count + mesh, view, ty_light_mesh_pdf(set, &set->meshes[mesh], &view->from, met, wi));
+}
+
+int ty_light_set_object_group(const ty_light_set* set, uint32_t object)
+{
+    return set->grouped ? set->scene->objects[object].light_group : -1;
 }

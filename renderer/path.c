@@ -16,29 +16,25 @@ static bool survives(const ty_render_def* def, ty_path* p, float* u)
     return true;
 }
 
-static void add(ty_rgb* radiance, ty_rgb beta, ty_rgb light)
-{
-    *radiance = ty_rgb_add(*radiance, ty_rgb_mul(beta, light));
-}
-
 // The way on after a sampled direction. False = the path ends.
 static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, float u, ty_path* p)
 {
     p->beta = ty_rgb_mul(p->beta, sample->weight);
     if (!survives(&in->scene->render, p, &u))
         return false;
-    p->view = (ty_light_view){.from = bsdf->point.position, .pdf = sample->pdf, .full = sample->delta};
     ty_bsdf_spawn(bsdf, sample->wi, u, &p->ray);
     p->ray.mask = sample->transmitted ? TY_MASK_TRANSMISSION : sample->delta ? TY_MASK_GLOSSY : TY_MASK_DIFFUSE;
+    p->view = (ty_light_view){
+        .from = ty_path_light_point(in, bsdf), .pdf = sample->pdf, .full = sample->delta, .seen = p->ray.mask};
     return true;
 }
 
 // Light at a surface and the next ray from it. u: direction 2, lobe, roulette and start; light's surface 2, choice,
 // start of the shadow ray. False = the path ends.
-static bool scatter(const ty_integrator* in, const ty_bsdf* bsdf, const float u[8], ty_path* p, ty_rgb* radiance,
+static bool scatter(const ty_integrator* in, const ty_bsdf* bsdf, const float u[8], ty_path* p, ty_film_sample* out,
                     ty_counters* counters)
 {
-    add(radiance, p->beta, ty_path_direct_light(in, bsdf, u + 4, counters));
+    ty_path_direct_light(in, bsdf, u + 4, p->beta, out, counters);
     ty_bsdf_sample sample;
     return ty_bsdf_sample_wi(bsdf, u[2], (ty_vec2){u[0], u[1]}, &sample) && go_on(in, bsdf, &sample, u[3], p);
 }
@@ -46,7 +42,7 @@ static bool scatter(const ty_integrator* in, const ty_bsdf* bsdf, const float u[
 // A translucent body under a coat, seen by the camera: light comes by both, and the way on is one of them. Choosing
 // between them for the light as well would double the noise.
 static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf* body, ty_path* p,
-                         ty_rgb* radiance, ty_counters* counters)
+                         ty_film_sample* out, ty_counters* counters)
 {
     float c[8], pair[4], u[8], chance = ty_bsdf_coat_chance(body);
     ty_bsdf coat = *body;
@@ -54,9 +50,9 @@ static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_
     ty_sampler_8d(sampler, TY_GROUP_COAT, c);
     ty_bsdf_sample glint;
     bool shines = ty_bsdf_sample_wi(&coat, c[2], (ty_vec2){c[0], c[1]}, &glint);
-    add(radiance, p->beta, ty_path_direct_light(in, &coat, c + 4, counters));
+    ty_path_direct_light(in, &coat, c + 4, p->beta, out, counters);
     if (shines)
-        add(radiance, p->beta, ty_path_light_along(in, &coat, &glint, c[3], counters));
+        ty_path_light_along(in, &coat, &glint, c[3], p->beta, out, counters);
 
     ty_rgb weight;
     ty_rng extra = ty_sampler_extra(sampler, p->bounce);
@@ -66,7 +62,7 @@ static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_
     bool lit = ty_bsdf_take_interior(body, &in->scene->shading, inside, &extra, &weight);
     counters->interior_rays++;
     if (lit)
-        add(radiance, ty_rgb_mul(p->beta, weight), ty_path_direct_light(in, body, u + 4, counters));
+        ty_path_direct_light(in, body, u + 4, ty_rgb_mul(p->beta, weight), out, counters);
 
     if (pair[2] < chance)
     {
@@ -76,16 +72,16 @@ static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_
         return goes;
     }
     p->beta = ty_rgb_scale(ty_rgb_mul(p->beta, weight), 1.0f / (1.0f - chance));
-    ty_bsdf_sample out;
-    return lit && ty_bsdf_sample_wi(body, u[2], (ty_vec2){u[0], u[1]}, &out) && go_on(in, body, &out, u[3], p);
+    ty_bsdf_sample sample;
+    return lit && ty_bsdf_sample_wi(body, u[2], (ty_vec2){u[0], u[1]}, &sample) && go_on(in, body, &sample, u[3], p);
 }
 
 // The next vertex of a path. False = the path ends.
-static bool advance(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf* bsdf, ty_path* p, ty_rgb* radiance,
+static bool advance(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf* bsdf, ty_path* p, ty_film_sample* out,
                     ty_counters* counters)
 {
     if (p->bounce == 0 && ty_bsdf_coat_chance(bsdf) > 0.0f)
-        return scatter_both(in, sampler, bsdf, p, radiance, counters);
+        return scatter_both(in, sampler, bsdf, p, out, counters);
     if (bsdf->kind == TY_BSDF_CDRF)
     {
         float pair[4];
@@ -100,7 +96,7 @@ static bool advance(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf*
     }
     float u[8];
     ty_sampler_8d(sampler, ty_group_scatter(p->bounce), u);
-    return scatter(in, bsdf, u, p, radiance, counters);
+    return scatter(in, bsdf, u, p, out, counters);
 }
 
 // Beer's law over a way through the medium behind a surface.
@@ -112,18 +108,24 @@ static void absorb(ty_path* p, ty_rgb absorption, float distance)
                                            ty_exp(-absorption.b * distance)});
 }
 
+static void add_emission(const ty_integrator* in, const ty_bsdf* bsdf, const ty_path* p, ty_film_sample* out)
+{
+    float weight = ty_light_set_weight(&in->lights, &bsdf->point, &p->view, p->ray.direction);
+    ty_film_sample_add(out, ty_light_set_object_group(&in->lights, bsdf->point.object),
+                       ty_rgb_scale(ty_rgb_mul(p->beta, bsdf->emission), weight));
+}
+
 void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray ray, ty_counters* counters,
                     ty_film_sample* out)
 {
     const ty_scene* scene = in->scene;
-    ty_path p = {.ray = ray, .beta = {1.0f, 1.0f, 1.0f}, .view = {.full = true, .camera = true}};
+    ty_path p = {.ray = ray, .beta = {1.0f, 1.0f, 1.0f}, .view = {.full = true, .seen = TY_MASK_CAMERA}};
     for (;; p.bounce++)
     {
         ty_hit hit;
         bool covered = false, found = ty_world_intersect(scene->world, &p.ray, &hit);
         if (!p.view.done)
-            add(&out->radiance, p.beta,
-                ty_light_set_along(&in->lights, &p.ray, found ? hit.t : TY_FLOAT_MAX, &p.view, &covered));
+            covered = ty_light_set_along(&in->lights, &p.ray, found ? hit.t : TY_FLOAT_MAX, &p.view, p.beta, out);
         if (p.bounce == 0)
             out->covered = found || covered;
         if (!found)
@@ -136,10 +138,11 @@ void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray r
         counters->path_vertices++;
         if (!bsdf.entering)
             absorb(&p, ty_bsdf_absorption(&bsdf), hit.t);
-        add(&out->radiance, p.beta, bsdf.emission);
+        if (!ty_rgb_is_black(bsdf.emission))
+            add_emission(in, &bsdf, &p, out);
         if (p.bounce == 0)
             ty_integrator_record(in, &bsdf, out);
-        if (p.bounce == scene->render.max_depth || !advance(in, sampler, &bsdf, &p, &out->radiance, counters))
+        if (p.bounce == scene->render.max_depth || !advance(in, sampler, &bsdf, &p, out, counters))
             return;
         counters->path_rays++;
     }

@@ -29,12 +29,12 @@ typedef struct render
     double start;
 } render;
 
-static void integrator_init(ty_integrator* in, const ty_scene* scene, const int size[2])
+static void integrator_init(ty_integrator* in, const ty_scene* scene, const ty_film* film)
 {
     in->scene = scene;
-    ty_camera_init(&in->camera, &scene->camera, size);
+    ty_camera_init(&in->camera, &scene->camera, film->setup.size);
     ty_pixel_filter_init(&in->filter, (ty_filter_kind)scene->film.filter, scene->film.filter_width);
-    ty_light_set_init(&in->lights, scene);
+    ty_light_set_init(&in->lights, scene, film->group_count > 0);
     ty_sobol_init(&in->sobol);
     in->first_instance = TY_ALLOC(uint32_t, scene->object_count);
     uint32_t next = 1;
@@ -73,7 +73,7 @@ static void render_pixel(render* r, int x, int y, ty_counters* counters)
 {
     const ty_integrator* in = &r->integrator;
     bool debug = in->scene->render.integrator != TY_INTEGRATOR_PATH;
-    ty_pixel_sums sums = ty_pixel_sums_make();
+    ty_pixel_sums sums = ty_pixel_sums_make(r->film->group_count);
     for (int s = r->pass_begin; s < r->pass_end; ++s)
     {
         ty_sampler sampler = ty_sampler_make(&in->sobol, in->scene->render.seed, x, y, (uint32_t)s);
@@ -199,7 +199,7 @@ ty_status ty_render(const ty_scene* scene, const ty_render_options* options, ty_
     uint64_t pixels = (uint64_t)film->width * (uint64_t)film->height;
     render* r = TY_ALLOC(render, 1);
     ty_progress progress;
-    integrator_init(&r->integrator, scene, setup->size);
+    integrator_init(&r->integrator, scene, film);
     r->film = film;
     r->counters = TY_ALLOC(ty_counters, worker_count);
     r->pixel_samples_total = pixels * (uint64_t)(options->sample_end - options->sample_begin);

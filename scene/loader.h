@@ -165,6 +165,9 @@ void ty_read_turntable(ty_loader* loader);
 bool ty_object_turn(const ty_scene* scene, ty_affine* map); // of the turntable; false = none
 void ty_read_light(ty_loader* loader, int index);
 void ty_read_object(ty_loader* loader, int index);
+// light_links.c
+int ty_light_group_index(ty_loader* loader, const ty_node* name); // NULL = "default"
+void ty_read_links(ty_loader* loader);                            // after lights, objects and materials
 // Index of a texture by file, space and wrap; the same for equal ones.
 int ty_texture_index(ty_loader* loader, const ty_texture_def* def, ty_place place);
 

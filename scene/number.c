@@ -106,6 +106,7 @@ void ty_param_expected(const ty_param* row, ty_text* out)
         [TY_PARAM_GROUP] = "a mapping",
         [TY_PARAM_LIST] = "a list of mappings",
         [TY_PARAM_NAMES] = "a mapping of names to names",
+        [TY_PARAM_STRINGS] = "a list of texts",
     };
     if (row->type == TY_PARAM_ENUM)
     {
@@ -142,6 +143,7 @@ const char* ty_param_type_name(ty_param_type type)
         [TY_PARAM_GROUP] = "mapping",
         [TY_PARAM_LIST] = "list",
         [TY_PARAM_NAMES] = "names",
+        [TY_PARAM_STRINGS] = "texts",
     };
     return names[type];
 }
@@ -194,6 +196,7 @@ void ty_param_value_text(const ty_param* row, const void* def, ty_text* out)
     case TY_PARAM_GROUP:
     case TY_PARAM_LIST:
     case TY_PARAM_NAMES:
+    case TY_PARAM_STRINGS:
         break;
     }
 }

@@ -38,6 +38,12 @@ static const ty_param object_rows[] = {
      "about x, then y, then z", false},
     {"scale", TY_PARAM_FLOAT3, "", -1e9, 1e9, NULL, NULL, offsetof(ty_object_def, scale),
      "applied first; one number for all three", false},
+    {"light_group", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_object_def, light_group),
+     "light group of what its material emits", false},
+    {"lights", TY_PARAM_STRINGS, "", 0, 0, NULL, NULL, offsetof(ty_object_def, lights),
+     "the only lights, glowing objects or light groups that light it, by name", false},
+    {"exclude_lights", TY_PARAM_STRINGS, "", 0, 0, NULL, NULL, offsetof(ty_object_def, exclude_lights),
+     "lights, glowing objects or light groups that do not light it", false},
 };
 
 static const ty_param mesh_rows[] = {

@@ -189,6 +189,28 @@ static bool read_names(ty_reader* reader, ty_node* node, const ty_param* row, ty
     return good;
 }
 
+static bool read_strings(ty_reader* reader, const ty_node* node, const ty_param* row, ty_param_strings* out)
+{
+    bool single = node->kind == TY_NODE_SCALAR && node->text[0];
+    if (!single && node->kind != TY_NODE_LIST)
+    {
+        ty_param_report_type(reader, node, row);
+        return false;
+    }
+    int count = single ? 1 : node->count;
+    if (count > MAX_LIST)
+    {
+        ty_report(reader->errors, node->place, TY_BAD_INPUT, "'%s': more than %d entries", row->name, MAX_LIST);
+        return false;
+    }
+    *out = (ty_param_strings){TY_ARENA_ALLOC(reader->arena, const char*, count), count};
+    bool good = true;
+    const ty_param text = {.name = row->name, .type = TY_PARAM_STRING, .unit = ""};
+    for (int i = 0; i < count; ++i)
+        good &= read_string(reader, single ? node : node->items[i], &text, &out->items[i]);
+    return good;
+}
+
 // Keys of a group within a struct: the defaults are the struct's, not the group's.
 static bool read_keys(ty_reader* reader, ty_node* node, const ty_param_table* table, void* def,
                       const char* const* skip);
@@ -230,6 +252,8 @@ bool ty_param_read(ty_reader* reader, ty_node* node, const ty_param* row, void* 
         return read_list(reader, node, row, field);
     case TY_PARAM_NAMES:
         return read_names(reader, node, row, field);
+    case TY_PARAM_STRINGS:
+        return read_strings(reader, node, row, field);
     }
     return false;
 }

@@ -128,6 +128,9 @@ static void add_type(ty_text* out, const ty_param* row)
     case TY_PARAM_GROUP:
         ty_text_format(out, "{\"$ref\": \"#/$defs/%s\"}", row->group->name);
         break;
+    case TY_PARAM_STRINGS:
+        ty_text_add(out, "{\"type\": \"string\"}, {\"type\": \"array\", \"items\": {\"type\": \"string\"}}");
+        break;
     case TY_PARAM_LIST:
         ty_text_format(out, "{\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/%s\"}}", row->group->name);
         break;

@@ -22,6 +22,7 @@ static void read_sections(ty_loader* loader)
     ty_read_materials(loader);
     ty_read_objects(loader);
     ty_read_lights(loader);
+    ty_read_links(loader);
 }
 
 // Overrides are in the tree by now. What they were is kept in the text as well, behind those that an earlier recipe

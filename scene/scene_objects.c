@@ -115,6 +115,7 @@ void ty_read_object(ty_loader* loader, int index)
     if (!object->name)
         object->name = entry->def.name ? entry->def.name : ty_arena_format(loader->arena, "object%d", index);
     object->material = (uint32_t)entry->material;
+    object->light_group = ty_light_group_index(loader, ty_node_get(node, "light_group"));
 }
 
 void ty_read_objects(ty_loader* loader)

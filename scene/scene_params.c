@@ -64,6 +64,7 @@ static void turntable_default(void* def)
 }
 
 static const char* const filters[] = {"box", "gaussian", "blackman_harris", NULL};
+static const char* const samplings[] = {"mis", "light", "bsdf", NULL};
 static const char* const integrators[] = {"path", "albedo", "normal", "curvature", "ao", NULL};
 
 static const char* const turns[] = {"camera", "objects", NULL};
@@ -110,6 +111,8 @@ static const ty_param render_rows[] = {
     {"animate_seed", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_render_def, animate_seed),
      "other noise in every frame, so that it does not stand still; a loop's first frame then differs from its next",
      false},
+    {"light_sampling", TY_PARAM_ENUM, "", 0, 0, samplings, NULL, offsetof(ty_render_def, light_sampling),
+     "how light is found: by lights and surfaces together, or one alone, for comparison", false},
     {"ao_distance", TY_PARAM_FLOAT, "m", 0, MANY, NULL, NULL, offsetof(ty_render_def, ao_distance),
      "reach of ambient occlusion", false},
     {"curvature_scale", TY_PARAM_FLOAT, "m", 0, MANY, NULL, NULL, offsetof(ty_render_def, curvature_scale),

@@ -129,6 +129,16 @@ bool ty_material_is_emissive(const ty_material* material)
     return material->model == TY_MODEL_SURFACE && !is_zero(&s->emission_luminance) && !is_zero(&s->emission_color);
 }
 
+ty_rgb ty_material_emission(const ty_material* material, const ty_shading_context* context,
+                            const ty_surface_point* point)
+{
+    const ty_surface_def* s = &material->surface;
+    if (!ty_material_is_emissive(material))
+        return ty_rgb_grey(0.0f);
+    return ty_rgb_scale(ty_input_color(&s->emission_color, context, point),
+                        ty_max(ty_input_float(&s->emission_luminance, context, point), 0.0f));
+}
+
 // Shading normals may turn away from a viewer who sees the triangle: bend them back until they face wo.
 static ty_vec3 facing_normal(ty_vec3 ns, ty_vec3 wo)
 {

@@ -183,9 +183,8 @@ void ty_surface_prepare(const ty_material* material, const ty_shading_context* c
     if (material->coat)
         prepare_coat(material, context, b);
     prepare_loss(material, roughness, b);
-    if (b->entering && ty_material_is_emissive(material))
-        b->emission = ty_rgb_scale(ty_input_color(&s->emission_color, context, p),
-                                   ty_max(ty_input_float(&s->emission_luminance, context, p), 0.0f));
+    if (b->entering)
+        b->emission = ty_material_emission(material, context, p);
     b->layer_average = layer_average(b);
     choose_probabilities(b, ty_dot(b->wo, b->frame.n));
 }

@@ -16,6 +16,9 @@ static ty_film_sample random_sample(ty_rng* rng)
 {
     float size = ty_rng_float(rng) < 0.1f ? 120000.0f : 1.0f; // wide enough to fill every word of the sums
     ty_film_sample s = {.radiance = {size * ty_rng_float(rng), size * ty_rng_float(rng), size * ty_rng_float(rng)}};
+    float share = ty_rng_float(rng); // the third group stays dark
+    s.group[0] = ty_rgb_scale(s.radiance, share);
+    s.group[1] = ty_rgb_scale(s.radiance, 1.0f - share);
     s.hit = s.covered = ty_rng_float(rng) < 0.8f;
     if (s.hit)
     {
@@ -36,7 +39,8 @@ static ty_film_sample sample_of(int x, int y, int index)
 
 static ty_film* film_make(int begin, int end, unsigned aovs)
 {
-    ty_film_setup setup = {{20, 10}, {3, 2, 17, 8}, begin, end, aovs, true};
+    static const char* const groups[] = {"default", "key", "a-rather-long-name-of-40-characters-1234"};
+    ty_film_setup setup = {{20, 10}, {3, 2, 17, 8}, begin, end, aovs, true, groups, 3};
     ty_film* film;
     assert_int_equal(ty_film_create(&setup, &film, NULL), TY_OK);
     return film;
@@ -47,7 +51,7 @@ static void film_fill(ty_film* film, int begin, int end)
     for (int y = 2; y <= 8; ++y)
         for (int x = 3; x <= 17; ++x)
         {
-            ty_pixel_sums sums = ty_pixel_sums_make();
+            ty_pixel_sums sums = ty_pixel_sums_make(film->group_count);
             for (int i = begin; i < end; ++i)
             {
                 ty_film_sample s = sample_of(x, y, i);
@@ -67,6 +71,7 @@ static void assert_same_sums(const ty_film* a, const ty_film* b)
             assert_memory_equal(p.radiance, q.radiance, sizeof p.radiance);
             assert_memory_equal(p.normal, q.normal, sizeof p.normal);
             assert_memory_equal(p.albedo, q.albedo, sizeof p.albedo);
+            assert_memory_equal(p.group, q.group, sizeof p.group);
             assert_true(p.samples == q.samples && p.covered == q.covered && p.first_sample == q.first_sample &&
                         p.first_instance == q.first_instance && p.first_depth == q.first_depth);
             assert_memory_equal(&p.first_position, &q.first_position, sizeof p.first_position);
@@ -76,7 +81,8 @@ static void assert_same_sums(const ty_film* a, const ty_film* b)
 static void test_any_split_and_order_is_exact(void** state)
 {
     (void)state;
-    ty_film *whole = film_make(0, SAMPLES, TY_AOV_ALL), *pieces = film_make(0, SAMPLES, TY_AOV_ALL);
+    const unsigned aovs = TY_AOV_ALL | TY_AOV_LIGHT;
+    ty_film *whole = film_make(0, SAMPLES, aovs), *pieces = film_make(0, SAMPLES, aovs);
     film_fill(whole, 0, SAMPLES);
     const int cuts[][2] = {{77, 200}, {0, 1}, {9, 77}, {1, 9}};
     for (int i = 0; i < 4; ++i)
@@ -119,10 +125,42 @@ static void test_means_and_variance(void** state)
     ty_film_destroy(film);
 }
 
+static float channel_at(const ty_exr* exr, const char* name, size_t i)
+{
+    const ty_exr_channel* channel = ty_exr_find_channel(exr, name);
+    assert_non_null(channel);
+    return ((const float*)channel->pixels)[i];
+}
+
+static ty_scene scene_make(void);
+
+static void test_groups_add_up_to_the_beauty(void** state)
+{
+    (void)state;
+    ty_scene scene = scene_make();
+    ty_film* film = film_make(0, 64, TY_AOV_LIGHT);
+    film->setup.half = false;
+    film_fill(film, 0, 64);
+    ty_film_write how = {.scene = &scene, .sample_end = 64};
+    ty_exr* exr;
+    assert_int_equal(ty_film_to_exr(film, &how, &exr, NULL), TY_OK);
+    assert_int_equal(exr->channel_count, 3 + 9);
+    for (size_t i = 0; i < 15 * 7; ++i)
+    {
+        float whole = channel_at(exr, "G", i), first = channel_at(exr, "light.default.G", i);
+        float sum = first + channel_at(exr, "light.key.G", i);
+        assert_true(first > 0.0f && first < whole);
+        assert_true(fabsf(sum - whole) < 1e-6f * whole);
+        assert_true(channel_at(exr, "light.a-rather-long-name-of-40-characters-1234.B", i) == 0.0f);
+    }
+    ty_exr_destroy(exr);
+    ty_film_destroy(film);
+}
+
 static void test_constant_pixel_has_no_variance(void** state)
 {
     (void)state;
-    ty_pixel_sums sums = ty_pixel_sums_make();
+    ty_pixel_sums sums = ty_pixel_sums_make(0);
     ty_film_sample s = {.radiance = {0.1f, 0.7f, 1234.567f}};
     for (uint32_t i = 0; i < 1000; ++i)
         assert_int_equal(ty_pixel_sums_add(&sums, &s, i), TY_SAMPLE_GOOD);
@@ -133,7 +171,7 @@ static void test_constant_pixel_has_no_variance(void** state)
 static void test_bad_samples_are_counted_as_black(void** state)
 {
     (void)state;
-    ty_pixel_sums sums = ty_pixel_sums_make();
+    ty_pixel_sums sums = ty_pixel_sums_make(0);
     ty_film_sample good = {.radiance = {1.0f, 1.0f, 1.0f}, .hit = true, .covered = true, .depth = 2.0f};
     ty_film_sample bad = good;
     bad.radiance.g = NAN;
@@ -152,7 +190,7 @@ static void test_bad_samples_are_counted_as_black(void** state)
 static void test_saturation_fits_the_longest_run(void** state)
 {
     (void)state;
-    ty_pixel_sums sums = ty_pixel_sums_make();
+    ty_pixel_sums sums = ty_pixel_sums_make(0);
     ty_film_sample s = {.radiance = {1e9f, -1e9f, 131071.0f}};
     for (uint32_t i = 0; i < TY_SAMPLER_MAX_SAMPLES; ++i)
         if (ty_pixel_sums_add(&sums, &s, i) != TY_SAMPLE_SATURATED)
@@ -162,7 +200,7 @@ static void test_saturation_fits_the_longest_run(void** state)
     assert_true(ty_fixed_mean(sums.radiance[2], sums.samples) == 131071.0f);
     assert_true(ty_film_variance(&sums) == 0.0f);
     // The widest spread: half at each end. Variance of the mean = limit^2 n / (n - 1) / n.
-    sums = ty_pixel_sums_make();
+    sums = ty_pixel_sums_make(0);
     for (uint32_t i = 0; i < TY_SAMPLER_MAX_SAMPLES; ++i)
     {
         float v = i & 1u ? 1e9f : -1e9f;
@@ -177,7 +215,10 @@ static void test_setup_is_checked(void** state)
     (void)state;
     ty_film* film;
     ty_error error;
-    ty_film_setup good = {{20, 10}, {0, 0, 19, 9}, 0, 16, TY_AOV_ALL, true}, bad = good;
+    ty_film_setup good = {.size = {20, 10}, .crop = {0, 0, 19, 9}, .sample_end = 16, .aovs = TY_AOV_ALL}, bad = good;
+    bad.aovs |= TY_AOV_LIGHT; // without a name
+    assert_int_equal(ty_film_create(&bad, &film, &error), TY_USAGE);
+    bad = good;
     bad.crop[2] = 20;
     assert_int_equal(ty_film_create(&bad, &film, &error), TY_USAGE);
     assert_null(film);
@@ -273,7 +314,8 @@ static void assert_same_files(const char* a, const char* b)
 static void test_merge_gives_the_same_bytes(void** state)
 {
     ty_scene scene = scene_make();
-    const unsigned choices[] = {TY_AOV_ALL, 0, TY_AOV_Z | TY_AOV_ALPHA, TY_AOV_INSTANCE | TY_AOV_VARIANCE};
+    const unsigned choices[] = {TY_AOV_ALL, TY_AOV_ALL | TY_AOV_LIGHT, TY_AOV_LIGHT,
+                                0,          TY_AOV_Z | TY_AOV_ALPHA,   TY_AOV_INSTANCE | TY_AOV_VARIANCE};
     for (size_t i = 0; i < sizeof choices / sizeof choices[0]; ++i)
     {
         const char *whole = path_of(state, "whole.exr"), *merged = path_of(state, "merged.exr");
@@ -411,7 +453,7 @@ static void test_partial_film(void** state)
     ty_scene scene = scene_make();
     ty_film* film = film_make(0, 64, 0);
     film_fill(film, 0, 16);
-    ty_pixel_sums more = ty_pixel_sums_make();
+    ty_pixel_sums more = ty_pixel_sums_make(0);
     ty_film_sample black = {0};
     for (uint32_t i = 16; i < 32; ++i)
         (void)!ty_pixel_sums_add(&more, &black, i);
@@ -436,6 +478,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_any_split_and_order_is_exact),
         cmocka_unit_test(test_means_and_variance),
+        cmocka_unit_test(test_groups_add_up_to_the_beauty),
         cmocka_unit_test(test_constant_pixel_has_no_variance),
         cmocka_unit_test(test_bad_samples_are_counted_as_black),
         cmocka_unit_test(test_saturation_fits_the_longest_run),

@@ -12,7 +12,7 @@ static ty_light rectangle_make(float width, float height)
     ty_light_def def = {.center = {0.2f, 1.0f, -0.1f}, .target = {0.5f, -1.0f, 0.3f}, .up = {0, 0, 1}};
     def.size[0] = width;
     def.size[1] = height;
-    ty_light light = {.kind = TY_LIGHT_RECTANGLE, .value = {3, 2, 1}, .probability = 1.0f};
+    ty_light light = {.kind = TY_LIGHT_RECTANGLE, .value = {3, 2, 1}};
     light.center = def.center;
     ty_light_rectangle_init(&light, &def);
     return light;
@@ -190,7 +190,7 @@ static ty_texture* image_make(float sky, int sun_x, int sun_y, float sun)
 
 static ty_light environment_make(const ty_texture* image, float rotate)
 {
-    ty_light light = {.kind = TY_LIGHT_ENVIRONMENT, .value = {1, 1, 1}, .probability = 1.0f};
+    ty_light light = {.kind = TY_LIGHT_ENVIRONMENT, .value = {1, 1, 1}};
     ty_light_def def = {.rotate = rotate};
     ty_light_environment_init(&light, &def, image);
     return light;

@@ -33,12 +33,11 @@ static ty_scene* scene_load(const char* yaml)
 
 static picture render_crop(const ty_scene* scene, const int crop[4], int begin, int end, int threads)
 {
-    ty_film_setup setup = {{scene->film.size[0], scene->film.size[1]},
-                           {crop[0], crop[1], crop[2], crop[3]},
-                           begin,
-                           end,
-                           TY_AOV_ALL,
-                           false};
+    ty_film_setup setup = {.size = {scene->film.size[0], scene->film.size[1]},
+                           .crop = {crop[0], crop[1], crop[2], crop[3]},
+                           .sample_begin = begin,
+                           .sample_end = end,
+                           .aovs = TY_AOV_ALL};
     picture p;
     ty_workers* workers;
     assert_int_equal(ty_workers_create(threads, &workers, NULL), TY_OK);
@@ -561,7 +560,8 @@ static bool on_pass(void* context, const ty_film* film, int sample_end, double s
 
 static ty_status render_logged(const ty_scene* scene, pass_log* log, ty_film** film, ty_render_stats* stats)
 {
-    ty_film_setup setup = {{70, 45}, {0, 0, 69, 44}, 10, 60, 0, true};
+    ty_film_setup setup = {
+        .size = {70, 45}, .crop = {0, 0, 69, 44}, .sample_begin = 10, .sample_end = 60, .half = true};
     assert_int_equal(ty_film_create(&setup, film, NULL), TY_OK);
     ty_render_options options = {.sample_begin = 10, .sample_end = 60, .on_pass = on_pass, .pass_context = log};
     ty_error error;

@@ -25,7 +25,7 @@ static void six_mistakes_are_all_listed(void** state)
     assert_true(fixture_has("scene.yaml", 7, 34, "got a list of 2"));
     assert_true(fixture_has("scene.yaml", 8, 50, "no file 'gone.png' (tried: "));
     assert_true(fixture_has("scene.yaml", 10, 29, "no material 'ricee'; did you mean 'rice'?"));
-    assert_true(fixture_has("scene.yaml", 12, 13, "'rectangel' is not one of: environment, rectangle"));
+    assert_true(fixture_has("scene.yaml", 12, 13, "'rectangel' is not one of: environment, sky, rectangle"));
     assert_true(fixture_has("scene.yaml", 12, 13, "did you mean 'rectangle'?"));
     if (fixture_errors.count != 6)
         fixture_print_errors();
@@ -118,7 +118,7 @@ static void lights(void** state)
     fixture_one_error("tsuya: 1\nlights: [{ type: rectangle, size: [0, 1] }]\n", 2, 36, "'size' is 0: out of range");
     fixture_one_error("tsuya: 1\nlights: [{ type: sphere, radiance: -1 }]\n", 2, 36, "out of range");
     fixture_one_error("tsuya: 1\nlights: [{ type: point, radiance: 1 }]\n", 2, 25,
-                      "'radiance' means nothing for a point light, which has: name, type, intensity, center");
+                      "'radiance' means nothing for a point light, which has: name, type, group, intensity, power, color, exposure, center");
     fixture_one_error("tsuya: 1\nlights: [{ type: directional, target: [0, 1, 0] }]\n", 2, 39, "own center");
     fixture_one_error("tsuya: 1\nlights: [{ radiance: 1 }]\n", 2, 10, "missing key 'type' of light");
     fixture_one_error("tsuya: 1\nlights: [{ type: environment, image: sky.exr }]\n", 2, 38, "no file 'sky.exr'");

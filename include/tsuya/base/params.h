@@ -25,6 +25,7 @@ typedef enum ty_param_type
     TY_PARAM_GROUP,        // a nested struct in place, described by group
     TY_PARAM_LIST,         // ty_param_list of structs described by group
     TY_PARAM_NAMES,        // ty_param_list of ty_param_name: a mapping of names to names
+    TY_PARAM_STRINGS,      // ty_param_strings: a list of texts, or one
 } ty_param_type;
 
 // A parameter of a surface: a constant, optionally times a texture or an attribute.
@@ -58,6 +59,12 @@ typedef struct ty_param_name
 {
     const char *key, *value;
 } ty_param_name;
+
+typedef struct ty_param_strings
+{
+    const char** items; // owned by the reader's arena
+    int count;
+} ty_param_strings;
 
 typedef struct ty_param_table ty_param_table;
 

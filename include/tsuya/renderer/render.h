@@ -14,7 +14,8 @@ typedef enum ty_aov
     TY_AOV_ALBEDO = 16,
     TY_AOV_VARIANCE = 32,
     TY_AOV_INSTANCE = 64,
-    TY_AOV_ALL = 127
+    TY_AOV_ALL = 127,  // of every scene
+    TY_AOV_LIGHT = 128 // by light groups
 } ty_aov;
 
 // Sums per pixel as fixed-point integers: exact, so any split into samples, tiles or parts gives the same bits.
@@ -27,6 +28,8 @@ typedef struct ty_film_setup
     int sample_begin, sample_end; // the range this film is for
     unsigned aovs;                // ty_aov; beauty is always there
     bool half;
+    const char* const* groups; // names of the light groups with TY_AOV_LIGHT, borrowed during create
+    int group_count;           // at most TY_LIGHT_GROUPS
 } ty_film_setup;
 
 TY_CHECKED ty_status ty_film_create(const ty_film_setup* setup, ty_film** out, ty_error* error);

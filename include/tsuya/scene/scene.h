@@ -45,6 +45,13 @@ typedef enum ty_integrator_kind
     TY_INTEGRATOR_AO,
 } ty_integrator_kind;
 
+typedef enum ty_light_sampling
+{
+    TY_LIGHT_SAMPLING_MIS,   // of lights and of surfaces, weighted
+    TY_LIGHT_SAMPLING_LIGHT, // of lights alone where it can be
+    TY_LIGHT_SAMPLING_BSDF,  // of surfaces alone where it can be
+} ty_light_sampling;
+
 typedef struct ty_render_def
 {
     int integrator;        // ty_integrator_kind
@@ -53,6 +60,7 @@ typedef struct ty_render_def
     int roulette_depth;    // no Russian roulette before this many interactions
     ty_seed seed;          // of this frame, with animate_seed
     bool animate_seed;     // other noise in every frame
+    int light_sampling;    // ty_light_sampling
     float ao_distance;     // m
     float curvature_scale; // m: curvature * scale is shown as grey around .5
 } ty_render_def;
@@ -79,30 +87,62 @@ typedef struct ty_turntable_def
     bool has_about;
 } ty_turntable_def;
 
+#define TY_LIGHT_GROUPS 16     // most light groups of a scene
+#define TY_LIGHT_GROUP_NAME 40 // most bytes of a group's name
+
 typedef enum ty_light_kind
 {
-    TY_LIGHT_ENVIRONMENT, // constant radiance, or image (latitude-longitude, y up, rotate about y)
+    TY_LIGHT_ENVIRONMENT, // constant radiance, or image (latitude-longitude, y up)
+    TY_LIGHT_SKY,         // a gradient from the ground over the horizon to the zenith, and a sun
     TY_LIGHT_RECTANGLE,
+    TY_LIGHT_DISK,
     TY_LIGHT_SPHERE,
+    TY_LIGHT_CYLINDER, // its round side, from outside
     TY_LIGHT_POINT,
+    TY_LIGHT_SPOT,
     TY_LIGHT_DIRECTIONAL,
 } ty_light_kind;
+
+// Rays that see a light or an object by what they left: the camera, or the lobe that was sampled.
+typedef struct ty_visible_def
+{
+    bool camera, diffuse, glossy, transmission;
+} ty_visible_def;
 
 typedef struct ty_light_def
 {
     const char* name;        // NULL = none
     int kind;                // ty_light_kind
-    ty_rgb radiance;         // W/(m^2 sr): environment, rectangle, sphere
-    ty_rgb intensity;        // W/sr: point
+    const char* group;       // light group, NULL = "default"
+    int group_index;         // into the scene's light_groups
+    ty_rgb radiance;         // W/(m^2 sr): environment, rectangle, disk, sphere, cylinder
+    ty_rgb intensity;        // W/sr: point; spot: along its axis
     ty_rgb irradiance;       // W/m^2 on a plane facing it: directional
-    ty_vec3 center, target;  // m; a rectangle faces its target; directional: from center towards target
-    ty_vec3 up;              // orientation of a rectangle
+    float power;             // W, all that leaves it, in place of radiance or intensity where it is given
+    ty_rgb color;            // factor
+    float exposure;          // factor 2^exposure
+    ty_vec3 center, target;  // m; a rectangle, disk or spot faces its target; directional: from center towards target
+    ty_vec3 up;              // orientation of a rectangle or of a spot's image
     float size[2];           // m, full width and height
     float radius;            // m
-    const char* image;       // path
+    ty_vec3 axis;            // cylinder
+    float length;            // m, cylinder
+    float cone, penumbra;    // spot: full angle in radians; share of the half angle over which it fades
+    float angle;             // directional: full angle in radians, 0 = sharp shadows
+    ty_rgb zenith;           // W/(m^2 sr): sky
+    ty_rgb horizon, ground;  // the same
+    float falloff;           // exponent of the gradient over the sine of the height
+    ty_rgb sun_irradiance;   // W/m^2 on a plane facing it
+    float sun_elevation;     // radians above the horizon
+    float sun_azimuth;       // radians from -z over +x
+    float sun_angle;         // radians, full
+    const char* image;       // path: environment, spot
     const char* color_space; // of the image, NULL = guess
-    float rotate;            // radians about +y
-    bool camera_visible;     // area and environment lights seen by camera rays
+    float rotate;            // radians about +y: environment, sky
+    ty_vec3 orientation;     // radians about x, then y, then z, before rotate: environment
+    bool camera_visible;     // the older way to write visible.camera
+    ty_visible_def visible;
+    bool shadows; // what stands in its way hides it
 } ty_light_def;
 
 ty_film_def ty_film_def_default(void);
@@ -117,6 +157,7 @@ const ty_param_table* ty_render_params(void);
 const ty_param_table* ty_light_params(void);
 const ty_param_table* ty_timeline_params(void);
 const ty_param_table* ty_turntable_params(void);
+const ty_param_table* ty_visible_params(void);
 
 typedef struct ty_scene_object
 {
@@ -127,6 +168,8 @@ typedef struct ty_scene_object
     const float* const* attributes; // [attribute_count] -> [instances] or NULL
     const uint32_t* ids;            // [instances] from the aggregate file, or NULL
     uint32_t instance_count;
+    int light_group; // of what its material emits: index into the scene's light_groups
+    int light_link;  // which lights light it: index into the scene's light_links
 } ty_scene_object;
 
 // How often something was made or read again for another frame, since the scene was loaded.
@@ -159,6 +202,10 @@ typedef struct ty_scene
     ty_light_def* lights;
     ty_texture** light_images; // [light_count], NULL where none
     int light_count;
+    const char** light_groups; // [light_group_count]; the first is "default"
+    int light_group_count;     // at most TY_LIGHT_GROUPS
+    const bool** light_links;  // [light_link_count] -> [light_count + object_count], lights before emitting objects
+    int light_link_count;      // the first is NULL: all of them
     ty_texture** textures;
     int texture_count;
     const char** attribute_names;

@@ -96,6 +96,10 @@ typedef struct ty_shading_context
 ty_rgb ty_input_color(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point);
 float ty_input_float(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point);
 
+// Radiance that leaves the outer side at a point, in every direction.
+ty_rgb ty_material_emission(const ty_material* material, const ty_shading_context* context,
+                            const ty_surface_point* point);
+
 #include <tsuya/shading/bsdf.h>
 
 // Prepares the lobes at a point seen along wo (unit, away from the surface). If the point is seen from behind, opaque
