@@ -18,9 +18,10 @@ typedef struct compare_job
     ty_comparison_def def;
     const char* layers[MOST];
     const char* channels[MOST];
-    char* copies[MOST]; // of comma-separated values
+    char* copies[MOST + 1]; // of comma-separated values
     int copy_count;
     int crop[4];
+    ty_picture mask;
     ty_limit limits[MOST];
     int limit_count;
 } compare_job;
@@ -339,6 +340,20 @@ static ty_status compare_pictures(compare_job* job, const ty_picture side[2], ty
     return status;
 }
 
+// "FILE:CHANNEL>X": the mask's picture, and what stands behind the colon.
+static ty_status read_mask(compare_job* job, ty_error* error)
+{
+    const char* colon = job->def.mask ? strrchr(job->def.mask, ':') : NULL;
+    if (!colon)
+    {
+        return TY_OK;
+    }
+    char* path = job->copies[job->copy_count++] = ty_string_format("%.*s", (int)(colon - job->def.mask), job->def.mask);
+    job->def.mask = colon + 1;
+    job->def.mask_of = &job->mask;
+    return ty_picture_read(path, &job->mask, error);
+}
+
 static ty_status compare_files(compare_job* job)
 {
     ty_error error = {0};
@@ -354,7 +369,9 @@ static ty_status compare_files(compare_job* job)
     {
         status = ty_picture_read(job->arguments->positional[i], &side[i], &error);
     }
+    status = status == TY_OK ? read_mask(job, &error) : status;
     status = status == TY_OK ? compare_pictures(job, side, &error) : status;
+    ty_picture_term(&job->mask);
     ty_picture_term(&side[0]);
     ty_picture_term(&side[1]);
     ty_workers_destroy(job->def.workers);
@@ -384,7 +401,7 @@ static const ty_option options[] = {
     {"layer", 0, "LIST", "beauty (default), N, Z, albedo, ... or all"},
     {"channels", 0, "LIST", "exactly these channels"},
     {"crop", 0, "x0,y0,x1,y1", "only these pixels (inclusive)"},
-    {"mask", 0, "CHANNEL>X", "only where the reference's channel is above (<, =) X"},
+    {"mask", 0, "[FILE:]CHANNEL>X", "only where the reference's (or FILE's) channel is above (<, =) X"},
     {"ppd", 0, "N", "pixels a degree for FLIP (default 67: 4K at arm's length)"},
     {"peak", 0, "X", "of psnr (default: 1, of linear pictures the reference's largest)"},
     {"exposure", 'e', "EV", "stops, for what FLIP looks at"},

@@ -181,9 +181,21 @@ static ty_status choose_layers(comparing* job)
 
 // --- the mask ---
 
+static ty_status check_mask(const comparing* job, const ty_picture* picture, const char* channel)
+{
+    if (!ty_exr_find_channel(picture->exr, channel))
+    {
+        return ty_error_set(job->error, TY_USAGE, "--mask: %s has no channel '%s'", picture->path, channel);
+    }
+    return is_within(job->out->window, picture->exr->data_window)
+               ? TY_OK
+               : ty_error_set(job->error, TY_USAGE, "--mask: %s has another data window", picture->path);
+}
+
 static ty_status read_mask(comparing* job)
 {
     const char* text = job->def->mask;
+    const ty_picture* picture = job->def->mask_of ? job->def->mask_of : job->side[0];
     size_t length = strcspn(text, "<>=");
     ty_layer layer = {.channel_count = 1};
     snprintf(layer.channels[0], sizeof layer.channels[0], "%.*s", (int)length, text);
@@ -193,12 +205,9 @@ static ty_status read_mask(comparing* job)
     {
         return ty_error_set(job->error, TY_USAGE, "--mask: '%s' is not of the form CHANNEL>NUMBER (or <, =)", text);
     }
-    if (!ty_exr_find_channel(job->side[0]->exr, layer.channels[0]))
-    {
-        return ty_error_set(job->error, TY_USAGE, "--mask: the reference has no channel '%s'", layer.channels[0]);
-    }
-    ty_image values;
-    ty_status status = ty_picture_take(job->side[0], &layer, job->out->window, &values, job->error);
+    ty_image values = {0};
+    ty_status status = check_mask(job, picture, layer.channels[0]);
+    status = status == TY_OK ? ty_picture_take(picture, &layer, job->out->window, &values, job->error) : status;
     if (status != TY_OK)
     {
         return status;

@@ -12,7 +12,8 @@ typedef struct ty_comparison_def
     int channel_count;
     bool metrics[TY_METRIC_COUNT]; // those to compute
     const int* crop;               // {x0, y0, x1, y1} inclusive, NULL = the whole data window
-    const char* mask;              // "CHANNEL>NUMBER" of the reference, NULL = all pixels
+    const char* mask;              // "CHANNEL>NUMBER" (<, =) of mask_of, NULL = all pixels
+    const ty_picture* mask_of;     // NULL = the reference
     float ppd;                     // of FLIP
     double peak;                   // of PSNR, 0 = the reference's largest value (display pictures: 1)
     ty_develop_def develop;        // how linear pictures are looked at by LDR-FLIP
