@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <tsuya/base/log.h>
 #include <tsuya/base/suggest.h>
 
@@ -191,6 +192,29 @@ ty_status ty_argument_int(const ty_arguments* arguments, const char* name, long 
     }
     *out = value;
     return TY_OK;
+}
+
+ty_status ty_argument_bytes(const ty_arguments* arguments, const char* name, double low, double high, uint64_t* out)
+{
+    static const struct
+    {
+        const char* name;
+        double bytes;
+    } units[] = {{"", 1.0}, {"kB", 1e3}, {"MB", 1e6}, {"GB", 1e9}, {"KiB", 0x1p10}, {"MiB", 0x1p20}, {"GiB", 0x1p30}};
+    const char* text = ty_argument_text(arguments, name, "");
+    char* end;
+    double value = strtod(text, &end);
+    for (size_t i = 0; i < sizeof units / sizeof *units && end != text; i++)
+    {
+        double bytes = value * units[i].bytes;
+        if (strcasecmp(end, units[i].name) == 0 && bytes >= low && bytes <= high)
+        {
+            *out = (uint64_t)bytes;
+            return TY_OK;
+        }
+    }
+    return ty_usage(arguments->command, "--%s: '%s' is not a size from %g MB to %g TB, such as 512MB or 2GB", name,
+                    text, low * 1e-6, high * 1e-12);
 }
 
 ty_status ty_argument_float(const ty_arguments* arguments, const char* name, double low, double high, double* out)

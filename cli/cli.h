@@ -54,6 +54,9 @@ const char* ty_argument_text(const ty_arguments* arguments, const char* name, co
 TY_CHECKED ty_status ty_argument_int(const ty_arguments* arguments, const char* name, long low, long high, long* out);
 TY_CHECKED ty_status ty_argument_float(const ty_arguments* arguments, const char* name, double low, double high,
                                        double* out);
+// "512MB", "1.5GB" (decimal), "2GiB", or bytes.
+TY_CHECKED ty_status ty_argument_bytes(const ty_arguments* arguments, const char* name, double low, double high,
+                                       uint64_t* out);
 // Logs "tsuya COMMAND: text" and returns TY_USAGE.
 ty_status ty_usage(const ty_command* command, const char* format, ...) TY_PRINTF(2, 3);
 
@@ -62,6 +65,7 @@ ty_status ty_usage(const ty_command* command, const char* format, ...) TY_PRINTF
     {"define", 'D', "NAME=VALUE", "set a variable of the scene (repeatable)"},                                         \
         {"set", 0, "PATH=VALUE", "override any parameter, e.g. camera.vfov=20 (repeatable)"},                          \
         {"ocio", 0, "FILE", "OpenColorIO configuration"}, {"cache", 0, "FOLDER", "where made assets are kept"},        \
+        {"texture-cache", 0, "SIZE", "memory for textures, e.g. 512MB (default 1GB)"},                                 \
         {"sandbox", 0, NULL, "allow no file outside the scene's folder"},                                              \
     {                                                                                                                  \
         "threads", 't', "N", "worker threads (default: all cores)"                                                     \

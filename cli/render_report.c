@@ -37,6 +37,17 @@ static json_t* stats_json(const ty_scene* scene, const ty_render_stats* stats, c
     json_object_set_new(root, "assets_made", json_integer(scene->assets_made));
     json_object_set_new(root, "assets_cached", json_integer(scene->assets_cached));
     json_object_set_new(root, "scene_memory_bytes", count(ty_world_memory(scene->world)));
+    if (scene->texture_cache)
+    {
+        ty_mip_cache_stats textures;
+        ty_mip_cache_get_stats(scene->texture_cache, &textures);
+        json_object_set_new(root, "textures_converted", json_integer(textures.files_converted));
+        json_object_set_new(root, "textures_found", json_integer(textures.files_found));
+        json_object_set_new(root, "texture_seconds", json_real(textures.convert_seconds));
+        json_object_set_new(root, "texture_memory_bytes", count(textures.bytes_now));
+        json_object_set_new(root, "texture_bytes_read", count(textures.bytes_read));
+        json_object_set_new(root, "texture_tiles_read", count(textures.tiles_read));
+    }
     json_object_set_new(root, "peak_memory_bytes", count(ty_memory_peak()));
     return root;
 }

@@ -38,6 +38,14 @@ ty_status ty_scene_arguments_read(const ty_arguments* arguments, ty_scene_argume
     out->options.ocio = ty_argument_text(arguments, "ocio", NULL);
     out->options.isa = ty_argument_text(arguments, "isa", NULL);
     out->options.cache_folder = ty_argument_text(arguments, "cache", NULL);
+    if (ty_argument_has(arguments, "texture-cache"))
+    {
+        ty_status status = ty_argument_bytes(arguments, "texture-cache", 16e6, 1e15, &out->options.texture_bytes);
+        if (status != TY_OK)
+        {
+            return status;
+        }
+    }
     out->options.sandbox = ty_argument_has(arguments, "sandbox");
     long threads = 0;
     if (ty_argument_has(arguments, "threads"))

@@ -71,6 +71,11 @@ void ty_mip_texture_destroy(ty_mip_texture* texture)
     ty_free(texture);
 }
 
+int ty_mip_texture_frame_count(const ty_mip_texture* texture)
+{
+    return texture->frame_count;
+}
+
 static ty_status other_size(const char* path, int width, int height, int first_width, int first_height, ty_error* error)
 {
     return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "a frame of %d x %d in a sequence of %d x %d", width, height,

@@ -217,6 +217,9 @@ ty_status ty_render(const ty_scene* scene, const ty_render_options* options, ty_
             ty_progress_update(&progress, 1.0, NULL); // the last report of worker 0 was before the last tiles
         ty_progress_end(&progress);
     }
+    // A picture with holes in its textures is no picture.
+    if (status == TY_OK && scene->texture_cache)
+        status = ty_mip_cache_check(scene->texture_cache, error);
     sum_counters(r->counters, worker_count, stats);
     stats->seconds = ty_time_now() - r->start;
     integrator_term(&r->integrator);

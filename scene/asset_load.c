@@ -145,23 +145,6 @@ static void load_meshes(ty_loader* loader)
     }
 }
 
-// Textures of assets that no material uses are looked at when only checking.
-static void check_unused_textures(ty_loader* loader)
-{
-    for (int i = 0; i < loader->asset_count; ++i)
-    {
-        ty_asset* asset = &loader->assets[i];
-        if (asset->kind != TY_ASSET_TEXTURE || asset->texture >= 0)
-            continue;
-        ty_texture_def def = {asset->path, asset->texture_def.color_space, (ty_wrap)asset->texture_def.wrap};
-        ty_texture* texture = NULL;
-        ty_error error;
-        if (ty_texture_create(&def, loader->scene->color, &texture, &error) != TY_OK)
-            ty_report_error(loader->errors, asset->place, "texture", &error);
-        ty_texture_destroy(texture);
-    }
-}
-
 void ty_load_assets(ty_loader* loader)
 {
     double start = ty_time_now();
@@ -171,8 +154,6 @@ void ty_load_assets(ty_loader* loader)
     resources->passing = TY_ARENA_ALLOC(loader->arena, const char*, loader->asset_count);
     int before = loader->errors->count;
     load_meshes(loader);
-    if (loader->options->check_only && loader->scene->color)
-        check_unused_textures(loader);
     for (int i = 0; i < loader->asset_count; ++i)
         if (is_wanted(loader, &loader->assets[i]) && loader->assets[i].kind == TY_ASSET_AGGREGATE)
             load_aggregate(loader, &loader->assets[i]);

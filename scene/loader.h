@@ -24,6 +24,7 @@ typedef enum ty_asset_kind
     TY_ASSET_MESH,
     TY_ASSET_SHAPE,
     TY_ASSET_TEXTURE,
+    TY_ASSET_FRAMES,    // files
     TY_ASSET_AGGREGATE, // a file
     TY_ASSET_RECIPE,
 } ty_asset_kind;
@@ -37,9 +38,10 @@ typedef struct ty_asset
     ty_shape_def shape;
     ty_recipe recipe;
     int prototype; // AGGREGATE: asset index or -1
-    int texture;   // TEXTURE: index into the scene's textures, -1 until used
     ty_texture_asset_def texture_def;
+    ty_frames_asset_def frames_def; // FRAMES, and recipes of frames
     bool used;
+    bool is_texture;         // some material uses it as one
     ty_mesh* mesh;           // once loaded
     ty_aggregate* aggregate; // once loaded
     const char* frames;      // RECIPE of frames: the pattern, once made
@@ -62,6 +64,15 @@ typedef struct ty_object_entry
     bool flags_known; // found when the world was built first
 } ty_object_entry;
 
+// A texture of materials.
+typedef struct ty_surface_texture
+{
+    ty_mip_texture_def def; // path NULL until a recipe has made the frames
+    ty_place place;
+    int asset; // of a sequence; -1 = a single image
+} ty_surface_texture;
+
+// An image of lights.
 typedef struct ty_texture_entry
 {
     ty_texture_def def;
@@ -99,6 +110,8 @@ typedef struct ty_loader
     int asset_count;
     ty_texture_entry* textures; // [texture_capacity], count in the scene
     int texture_capacity;
+    ty_surface_texture* surface_textures; // [surface_texture_capacity], count in the scene
+    int surface_texture_capacity;
     ty_attribute_use* uses;
     int use_count, use_capacity;
     int current_material; // while its table is read
@@ -168,12 +181,18 @@ void ty_read_object(ty_loader* loader, int index);
 // light_links.c
 int ty_light_group_index(ty_loader* loader, const ty_node* name); // NULL = "default"
 void ty_read_links(ty_loader* loader);                            // after lights, objects and materials
-// Index of a texture by file, space and wrap; the same for equal ones.
+// Index of a light's image by file, space and wrap; the same for equal ones.
 int ty_texture_index(ty_loader* loader, const ty_texture_def* def, ty_place place);
 
 // asset_load.c: files to memory (everything named when only checking, else what objects use)
 void ty_load_textures(ty_loader* loader);
 void ty_load_assets(ty_loader* loader);
+// scene_textures.c: textures of materials. Indices are the same for equal ones, -1 after a report. is_data: numbers,
+// not colours.
+int ty_surface_texture_of_asset(ty_loader* loader, int asset, const ty_node* name, bool is_data);
+int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data);
+void ty_load_surface_textures(ty_loader* loader); // after the assets: recipes make frames
+void ty_set_texture_times(ty_loader* loader);     // to the scene's seconds
 // scene_slots.c: the materials of each slot, once the meshes are known
 void ty_resolve_slots(ty_loader* loader);
 // scene_world.c: attributes, objects, trees, depth fields, the shading context

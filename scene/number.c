@@ -101,8 +101,10 @@ void ty_param_expected(const ty_param* row, ty_text* out)
         [TY_PARAM_STRING] = "a text",
         [TY_PARAM_PATH] = "the name of a file",
         [TY_PARAM_ENUM] = "",
-        [TY_PARAM_SCALAR_INPUT] = "a number, { texture, value, scale, offset } or { attribute, ... }",
-        [TY_PARAM_COLOR_INPUT] = "a colour, { texture, value, scale, offset } or { attribute, ... }",
+        [TY_PARAM_SCALAR_INPUT] =
+            "a number, { texture, value, scale, offset, uv, mapping, channel } or { attribute, ... }",
+        [TY_PARAM_COLOR_INPUT] =
+            "a colour, { texture, value, scale, offset, uv, mapping, channel } or { attribute, ... }",
         [TY_PARAM_GROUP] = "a mapping",
         [TY_PARAM_LIST] = "a list of mappings",
         [TY_PARAM_NAMES] = "a mapping of names to names",

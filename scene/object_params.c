@@ -17,6 +17,13 @@ static void texture_default(void* def)
     *(ty_texture_asset_def*)def = (ty_texture_asset_def){.wrap = TY_WRAP_REPEAT};
 }
 
+static void frames_default(void* def)
+{
+    ty_mip_texture_def texture = ty_mip_texture_def_default();
+    *(ty_frames_asset_def*)def =
+        (ty_frames_asset_def){.wrap = (int)texture.wrap, .fps = texture.fps, .last_frame = texture.last};
+}
+
 static void aggregate_default(void* def)
 {
     *(ty_aggregate_asset_def*)def = (ty_aggregate_asset_def){0};
@@ -60,6 +67,29 @@ static const ty_param texture_rows[] = {
     {"wrap", TY_PARAM_ENUM, "", 0, 0, wraps, NULL, offsetof(ty_texture_asset_def, wrap), "outside 0..1", false},
 };
 
+static const char* const interpolations[] = {"none", "linear", NULL};
+
+#define FRAMES_ROW(field, kind, unit, low, high, names, text)                                                          \
+    {                                                                                                                  \
+#field, kind, unit, low, high, names, NULL, offsetof(ty_frames_asset_def, field), text, false                  \
+    }
+static const ty_param frames_rows[] = {
+    {"frames", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_frames_asset_def, frames),
+     "image files, #### for the number (fill.####.exr); or a recipe (file or in place)", true},
+    FRAMES_ROW(color_space, TY_PARAM_STRING, "", 0, 0, NULL,
+               "of the images; if not given: guessed for colours, raw for numbers"),
+    FRAMES_ROW(wrap, TY_PARAM_ENUM, "", 0, 0, wraps, "outside 0..1"),
+    FRAMES_ROW(fps, TY_PARAM_FLOAT, "1/s", 0.001, 100000, NULL, "frames a second of the scene's time"),
+    FRAMES_ROW(start, TY_PARAM_FLOAT, "s", -1e6, 1e6, NULL, "when the first frame is shown; 0 = the timeline's start"),
+    FRAMES_ROW(first_frame, TY_PARAM_INT, "", -999999999, 999999999, NULL, "number of the first, with last_frame"),
+    FRAMES_ROW(last_frame, TY_PARAM_INT, "", -999999999, 999999999, NULL,
+               "number of the last; below first_frame: all there are"),
+    FRAMES_ROW(loop, TY_PARAM_BOOL, "", 0, 0, NULL, "the first frame follows the last"),
+    FRAMES_ROW(mirror, TY_PARAM_BOOL, "", 0, 0, NULL, "back and forth"),
+    FRAMES_ROW(hold, TY_PARAM_BOOL, "", 0, 0, NULL, "the first before, the last after; none of the three: an error"),
+    FRAMES_ROW(interpolate, TY_PARAM_ENUM, "", 0, 0, interpolations, "between one frame and the next"),
+};
+
 static const ty_param aggregate_rows[] = {
     {"aggregate", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_aggregate_asset_def, aggregate),
      "a recipe file (.yaml), a recipe in place, a .glb of instances, or .ply points", true},
@@ -78,6 +108,12 @@ static const ty_param_table mesh_table = {"asset.mesh", "A mesh file.", sizeof(t
 static const ty_param_table texture_table = {
     "asset.texture", "An image for inputs of materials.", sizeof(ty_texture_asset_def), texture_default,
     texture_rows,    TY_PARAM_COUNT(texture_rows)};
+static const ty_param_table frames_table = {"asset.frames",
+                                            "A sequence of images for inputs of materials.",
+                                            sizeof(ty_frames_asset_def),
+                                            frames_default,
+                                            frames_rows,
+                                            TY_PARAM_COUNT(frames_rows)};
 static const ty_param_table aggregate_table = {
     "asset.aggregate", "Many instances of a few meshes.", sizeof(ty_aggregate_asset_def), aggregate_default,
     aggregate_rows,    TY_PARAM_COUNT(aggregate_rows)};
@@ -95,6 +131,11 @@ const ty_param_table* ty_mesh_asset_params(void)
 const ty_param_table* ty_texture_asset_params(void)
 {
     return &texture_table;
+}
+
+const ty_param_table* ty_frames_asset_params(void)
+{
+    return &frames_table;
 }
 
 const ty_param_table* ty_aggregate_asset_params(void)

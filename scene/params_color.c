@@ -124,10 +124,16 @@ static bool read_input_source(ty_reader* reader, ty_node* node, const ty_param* 
     const char* text = name->text;
     if (texture)
     {
+        if (!ty_param_read_mapping(reader, node, out))
+            return false;
         out->texture = text;
-        out->texture_index = reader->find_texture(reader->context, texture, row->type == TY_PARAM_SCALAR_INPUT);
+        out->texture_index = reader->find_texture(reader->context, texture, row->type == TY_PARAM_SCALAR_INPUT,
+                                                  out->mapping == TY_MAPPING_UV);
         return out->texture_index >= 0;
     }
+    static const char* const keys[] = {"attribute", "value", "scale", "offset", NULL};
+    if (!ty_params_check_keys(reader, node, keys, "an attribute"))
+        return false;
     out->attribute = text;
     out->attribute_index = reader->find_attribute(reader->context, attribute);
     return out->attribute_index >= 0;
@@ -135,7 +141,8 @@ static bool read_input_source(ty_reader* reader, ty_node* node, const ty_param* 
 
 bool ty_param_read_input(ty_reader* reader, ty_node* node, const ty_param* row, ty_input* out)
 {
-    static const char* const keys[] = {"texture", "attribute", "value", "scale", "offset", NULL};
+    static const char* const keys[] = {"texture", "attribute", "value", "scale", "offset", "mapping",
+                                       "uv",      "channel",   "size",  "blend", NULL};
     *out = ty_input_scalar(1.0f);
     bool is_color = row->type == TY_PARAM_COLOR_INPUT;
     if (is_color && (node->kind != TY_NODE_MAP || ty_node_find(node, "color") >= 0))

@@ -72,7 +72,8 @@ static const char FILES[] =
     "| `ocio` | the name of a file | OpenColorIO configuration |\n"
     "| `film`, `camera`, `render`, `timeline`, `turntable` | mappings | below |\n"
     "| `frame` | a number | the frame that a plain `render` makes: `timeline.start` if not given |\n"
-    "| `assets` | name: `asset.mesh`, `asset.shape`, `asset.texture` or `asset.aggregate` | what there is |\n"
+    "| `assets` | name: `asset.mesh`, `asset.shape`, `asset.texture`, `asset.frames` or `asset.aggregate` | what there "
+    "is |\n"
     "| `materials` | name: { model: surface or cdrf, ... } | what it is made of |\n"
     "| `objects`, `lights` | lists of `object`, `light` | what is seen |\n\n"
     "A recipe has `tsuya: 1`, `kind:` (the name of its table: `aggregate`, `fill`, `roots`), `vars` and the keys of "
@@ -91,7 +92,17 @@ static const char FILES[] =
     "An input of a material is `value * (offset + scale * x)`, where x is what the texture or the instance's attribute "
     "gives; scale is 1 and offset 0 if not written. `texture` names an asset or a file. Packed aggregates bring the "
     "attributes `moisture` and `tint` (-1..1 around the mean) and `depth` (metres under the surface of the heap); "
-    "`.ply` points bring every further property by its name.\n";
+    "`.ply` points bring every further property by its name.\n\n"
+    "Beside `texture` may stand `channel`: `r`, `g`, `b`, `a` (1 where the file has none) or `luminance` in place of "
+    "all; "
+    "`uv: { scale, offset, rotate }`: the texture is looked up at offset + rotated (scale * uv), degrees "
+    "counter-clockwise; and `mapping: triplanar`, which needs no texture coordinates: the texture is projected along "
+    "the "
+    "axes of the object's own space, `size` metres a repetition (0.1), the three directions reaching into one another "
+    "by "
+    "`blend` (0.3; 0..1). Colours are converted from the space of the file: what the asset's `color_space` says, else "
+    "what the file says, else sRGB for integers and linear Rec.709 for floats; numbers are taken as they are. Textures "
+    "are converted once, into the folder of made assets; `--texture-cache` limits what of them is in memory.\n";
 
 char* ty_params_markdown(void)
 {

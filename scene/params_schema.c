@@ -60,15 +60,20 @@ static void add_input(ty_text* out, const ty_param* row)
         add_color(out, row);
     else
         add_number(out, row, "number");
+    static const char mapping[] =
+        ", \"uv\": {\"type\": \"object\", \"properties\": {\"scale\": {}, \"offset\": {}, \"rotate\": {}}, "
+        "\"additionalProperties\": false}, \"mapping\": {\"enum\": [\"uv\", \"triplanar\"]}, \"size\": {\"type\": "
+        "\"number\"}, \"blend\": {\"type\": \"number\"}, \"channel\": {\"enum\": [\"all\", \"r\", \"g\", \"b\", "
+        "\"a\", \"luminance\"]}";
     for (int i = 0; i < 2; ++i)
     {
         const char* source = i ? "attribute" : "texture";
         ty_text_format(
             out,
             ", {\"type\": \"object\", \"properties\": {\"%s\": {\"type\": \"string\"}, \"value\": {}, \"scale\": "
-            "{\"type\": \"number\"}, \"offset\": {\"type\": \"number\"}}, \"required\": [\"%s\"], "
+            "{\"type\": \"number\"}, \"offset\": {\"type\": \"number\"}%s}, \"required\": [\"%s\"], "
             "\"additionalProperties\": false}",
-            source, source);
+            source, i ? "" : mapping, source);
     }
 }
 
@@ -266,12 +271,12 @@ char* ty_params_schema(void)
                 "    \"render\": {\"$ref\": \"#/$defs/render\"},\n"
                 "    \"timeline\": {\"$ref\": \"#/$defs/timeline\"},\n"
                 "    \"turntable\": {\"$ref\": \"#/$defs/turntable\"},\n    \"frame\": {\"type\": \"number\"},\n");
-    ty_text_format(
-        &out,
-        "    \"assets\": {\"type\": \"object\", \"additionalProperties\": {\"anyOf\": [{\"$ref\": "
-        "\"#/$defs/asset.mesh\"}, {\"$ref\": \"#/$defs/%s\"}, {\"$ref\": \"#/$defs/asset.texture\"}, {\"$ref\": "
-        "\"#/$defs/asset.aggregate\"}]}},\n",
-        ty_shape_params()->name);
+    ty_text_format(&out,
+                   "    \"assets\": {\"type\": \"object\", \"additionalProperties\": {\"anyOf\": [{\"$ref\": "
+                   "\"#/$defs/asset.mesh\"}, {\"$ref\": \"#/$defs/%s\"}, {\"$ref\": \"#/$defs/asset.texture\"}, "
+                   "{\"$ref\": \"#/$defs/asset.frames\"}, {\"$ref\": "
+                   "\"#/$defs/asset.aggregate\"}]}},\n",
+                   ty_shape_params()->name);
     ty_text_add(&out, "    \"materials\": {\"type\": \"object\", \"additionalProperties\": {\"anyOf\": [{\"$ref\": "
                       "\"#/$defs/material.surface\"}, {\"$ref\": \"#/$defs/material.cdrf\"}]}},\n"
                       "    \"objects\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/object\"}},\n"

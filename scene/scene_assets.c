@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char* const kinds[] = {"mesh", "shape", "texture", "aggregate", NULL};
+static const char* const kinds[] = {"mesh", "shape", "texture", "frames", "aggregate", NULL};
 
 int ty_texture_index(ty_loader* loader, const ty_texture_def* def, ty_place place)
 {
@@ -57,6 +57,25 @@ static void read_texture(ty_loader* loader, ty_node* node, ty_asset* asset)
     asset->path = asset->texture_def.texture;
 }
 
+static void read_frames(ty_loader* loader, ty_node* node, ty_asset* asset)
+{
+    static const char* const skip[] = {"frames", NULL};
+    ty_frames_asset_def* def = &asset->frames_def;
+    ty_node* value = ty_node_get(node, "frames");
+    bool good = ty_params_read(&loader->reader, node, ty_frames_asset_params(), def, skip);
+    if (def->loop + def->mirror + def->hold > 1)
+        ty_report(loader->errors, node->place, TY_BAD_INPUT, "only one of 'loop', 'mirror' and 'hold'");
+    if (value->kind == TY_NODE_MAP)
+    {
+        if (ty_recipe_read(loader, value, "frames", &asset->recipe) && good)
+            asset->kind = TY_ASSET_RECIPE;
+        return;
+    }
+    asset->path = ty_files_use_frames(&loader->files, value, "frames");
+    if (asset->path && good)
+        asset->kind = TY_ASSET_FRAMES;
+}
+
 static void read_shape(ty_loader* loader, ty_node* node, ty_asset* asset)
 {
     if (ty_params_read(&loader->reader, node, ty_shape_params(), &asset->shape, NULL))
@@ -93,7 +112,7 @@ static void read_asset(ty_loader* loader, ty_node* node, ty_asset* asset)
     if (node->kind != TY_NODE_MAP)
     {
         ty_report(loader->errors, node->place, TY_BAD_INPUT,
-                  "asset '%.100s': expected a mapping with one of: mesh, shape, texture, aggregate, got %s",
+                  "asset '%.100s': expected a mapping with one of: mesh, shape, texture, frames, aggregate, got %s",
                   asset->name, ty_node_describe(node, described));
         return;
     }
@@ -103,8 +122,8 @@ static void read_asset(ty_loader* loader, ty_node* node, ty_asset* asset)
     if (!kind)
     {
         ty_report(loader->errors, node->place, TY_BAD_INPUT,
-                  "asset '%.100s': expected one of the keys mesh, shape, texture, aggregate%s", asset->name,
-                  node->count ? ty_nearest(node->keys[0].text, kinds, 4, nearest) : "");
+                  "asset '%.100s': expected one of the keys mesh, shape, texture, frames, aggregate%s", asset->name,
+                  node->count ? ty_nearest(node->keys[0].text, kinds, 5, nearest) : "");
         return;
     }
     asset->place = ty_node_get(node, kind)->place;
@@ -114,6 +133,8 @@ static void read_asset(ty_loader* loader, ty_node* node, ty_asset* asset)
         read_shape(loader, node, asset);
     else if (strcmp(kind, "texture") == 0)
         read_texture(loader, node, asset);
+    else if (strcmp(kind, "frames") == 0)
+        read_frames(loader, node, asset);
     else
         read_aggregate(loader, node, asset);
 }
@@ -142,7 +163,7 @@ void ty_read_assets(ty_loader* loader)
         ty_asset* asset = &loader->assets[i];
         asset->name = ty_arena_string(loader->arena, map->keys[i].text);
         asset->place = map->keys[i].place;
-        asset->prototype = asset->texture = -1;
+        asset->prototype = -1;
         read_asset(loader, map->items[i], asset);
     }
     for (int i = 0; i < loader->asset_count; ++i)

@@ -10,6 +10,7 @@ typedef struct ty_file_entry
     const char* text; // relative to the scene's folder, or absolute
     const char* path; // to open
     ty_hash content;
+    bool frames; // text and path are patterns: the files of all their frames
     bool hashed; // content is known: a file is read once, however many frames there are
 } ty_file_entry;
 
@@ -31,5 +32,7 @@ typedef struct ty_files
 const char* ty_files_find(ty_files* files, ty_node* node, const char* what);
 // The same, and the file's content belongs to the scene (see ty_files_add_to_hash).
 const char* ty_files_use(ty_files* files, ty_node* node, const char* what);
+// A pattern with #### for the numbers of frames, of which at least one is there.
+const char* ty_files_use_frames(ty_files* files, ty_node* node, const char* what);
 // Adds names and contents of entries [begin, end) in order.
 TY_CHECKED ty_status ty_files_add_to_hash(ty_files* files, int begin, int end, ty_hasher* hasher, ty_error* error);

@@ -240,6 +240,7 @@ ty_status ty_scene_set_frame(ty_scene* scene, double frame, ty_error_list* error
     TY_ASSERT(fabs(frame) <= MOST_FRAME);
     ty_loader_report_to(loader, errors);
     go_to(loader, frame);
+    ty_set_texture_times(loader);
     if (errors->count == first && loader->world_changed && scene->world)
     {
         ty_rebuild_world(loader);

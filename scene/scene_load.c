@@ -96,6 +96,7 @@ static void load_stages(ty_loader* loader, int first)
         return;
     ty_load_textures(loader);
     ty_load_assets(loader);
+    ty_load_surface_textures(loader);
     ty_resolve_slots(loader);
     ty_build_attributes(loader);
     if (loader->errors->count > first)
@@ -165,6 +166,9 @@ void ty_scene_destroy(ty_scene* scene)
     ty_world_destroy(scene->world);
     for (int i = 0; scene->textures && i < scene->texture_count; ++i)
         ty_texture_destroy(scene->textures[i]);
+    for (int i = 0; scene->surface_textures && i < scene->surface_texture_count; ++i)
+        ty_mip_texture_destroy(scene->surface_textures[i]);
+    ty_mip_cache_destroy(scene->texture_cache);
     for (int i = 0; scene->materials && i < scene->material_count; ++i)
         ty_material_destroy(scene->materials[i]);
     for (int i = 0; i < scene->resources->mesh_count; ++i)

@@ -4,40 +4,16 @@
 #include "nearest.h"
 #include <string.h>
 
-// Numbers are taken as they stand in the file unless the asset names a space.
-static const char* space_for(const char* named, bool is_data)
-{
-    return named || !is_data ? named : "raw";
-}
-
-static int asset_texture(ty_loader* loader, ty_asset* asset, const ty_node* name, bool is_data)
-{
-    if (asset->kind == TY_ASSET_NONE)
-        return -1; // reported where it is defined; without a texture the material is not made
-    if (asset->kind != TY_ASSET_TEXTURE)
-    {
-        ty_report(loader->errors, name->place, TY_BAD_INPUT, "'texture': asset '%.200s' is no texture", asset->name);
-        return -1;
-    }
-    const ty_texture_asset_def* def = &asset->texture_def;
-    ty_texture_def texture = {def->texture, space_for(def->color_space, is_data), (ty_wrap)def->wrap};
-    return asset->texture = ty_texture_index(loader, &texture, asset->place);
-}
-
 // An asset of that name, else a file; a name without a dot or slash can only be meant as an asset.
-static int find_texture(void* context, ty_node* name, bool is_data)
+static int find_texture(void* context, ty_node* name, bool is_data, bool by_uv)
 {
     ty_loader* loader = context;
-    loader->textured[loader->current_material] = true;
+    loader->textured[loader->current_material] |= by_uv;
     int index = ty_node_find(loader->asset_map, name->text);
     if (index < 0 && !strpbrk(name->text, "./"))
         return ty_asset_find(loader, name);
-    if (index >= 0)
-        return asset_texture(loader, &loader->assets[index], name, is_data);
-    ty_texture_def def = ty_texture_def_default();
-    def.color_space = space_for(NULL, is_data);
-    def.path = ty_files_use(&loader->files, name, "texture");
-    return def.path ? ty_texture_index(loader, &def, name->place) : -1;
+    return index >= 0 ? ty_surface_texture_of_asset(loader, index, name, is_data)
+                      : ty_surface_texture_of_file(loader, name, is_data);
 }
 
 static int find_attribute(void* context, const ty_node* name)

@@ -29,6 +29,18 @@ typedef struct ty_texture_asset_def
     int wrap; // ty_wrap
 } ty_texture_asset_def;
 
+typedef struct ty_frames_asset_def
+{
+    const char* frames; // pattern, or a recipe in place
+    const char* color_space;
+    int wrap; // ty_wrap
+    float fps;
+    float start;                 // s
+    int first_frame, last_frame; // last below first: all there are
+    bool loop, mirror, hold;     // at most one
+    int interpolate;             // 0 none, 1 linear
+} ty_frames_asset_def;
+
 typedef struct ty_aggregate_asset_def
 {
     const char* aggregate; // path, or a recipe in place
@@ -38,6 +50,7 @@ typedef struct ty_aggregate_asset_def
 const ty_param_table* ty_object_params(void);
 const ty_param_table* ty_mesh_asset_params(void);
 const ty_param_table* ty_texture_asset_params(void);
+const ty_param_table* ty_frames_asset_params(void);
 const ty_param_table* ty_aggregate_asset_params(void);
 
 // Whether a key of the light table means anything for a kind of light.

@@ -216,7 +216,7 @@ static void set_shading(ty_loader* loader)
         scene->instance_count += scene->objects[i].instance_count;
     }
     scene->shading = (ty_shading_context){.world = scene->world,
-                                          .textures = (const ty_texture* const*)scene->textures,
+                                          .textures = (const ty_mip_texture* const*)scene->surface_textures,
                                           .depth_fields = (const ty_depth_field* const*)scene->depth_fields,
                                           .object_attributes = attributes,
                                           .vertex_attributes = vertex_attributes(loader)};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Inputs at a point: a constant, times a texture or an attribute.
-#include <tsuya/shading/material.h>
+#include "input_texture.h"
 
 static ty_rgb vertex_value(const ty_mesh_attribute* attribute, const ty_shading_context* context,
                            const ty_surface_point* point)
@@ -31,7 +31,7 @@ ty_rgb ty_input_color(const ty_input* input, const ty_shading_context* context, 
 {
     if (input->texture_index >= 0)
     {
-        ty_rgb texel = ty_texture_sample(context->textures[input->texture_index], point->uv);
+        ty_rgb texel = ty_input_texel(input, context, point);
         return ty_rgb_mul(input->value, ty_rgb_add(ty_rgb_grey(input->offset), ty_rgb_scale(texel, input->scale)));
     }
     if (input->attribute_index >= 0)

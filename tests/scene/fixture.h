@@ -27,7 +27,12 @@ static inline int fixture_begin(void** state)
     snprintf(fixture_folder, sizeof(fixture_folder), "%s/tsuya_scene_XXXXXX",
              getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
     ty_log_set_level(TY_LOG_ERROR);
-    return mkdtemp(fixture_folder) ? 0 : -1;
+    if (!mkdtemp(fixture_folder))
+        return -1;
+    char* cache = ty_string_format("%s/cache", fixture_folder);
+    int result = setenv("TSUYA_CACHE", cache, 1);
+    ty_free(cache);
+    return result;
 }
 
 static inline void fixture_clear(void)

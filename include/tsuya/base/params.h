@@ -28,6 +28,22 @@ typedef enum ty_param_type
     TY_PARAM_STRINGS,      // ty_param_strings: a list of texts, or one
 } ty_param_type;
 
+typedef enum ty_input_mapping
+{
+    TY_MAPPING_UV,        // the mesh's texture coordinates
+    TY_MAPPING_TRIPLANAR, // along the three axes of the object's own space, by its normal; needs no uv
+} ty_input_mapping;
+
+typedef enum ty_input_channel
+{
+    TY_CHANNEL_ALL, // a number takes the first
+    TY_CHANNEL_R,
+    TY_CHANNEL_G,
+    TY_CHANNEL_B,
+    TY_CHANNEL_A,
+    TY_CHANNEL_LUMINANCE,
+} ty_input_channel;
+
 // A parameter of a surface: a constant, optionally times a texture or an attribute.
 typedef struct ty_input
 {
@@ -37,15 +53,36 @@ typedef struct ty_input
     float scale, offset;   // applied to what the texture or attribute gives: offset + scale * x
     int texture_index;     // set by scene/, -1 = none
     int attribute_index;   // set by scene/, -1 = none
+    // Of textures alone.
+    int mapping, channel;     // ty_input_mapping, ty_input_channel
+    ty_vec2 uv_x, uv_y, uv_t; // the texture is looked up at uv_x * u + uv_y * v + uv_t
+    float size;               // m: side of one repetition when triplanar
+    float blend;              // 0..1: how far the three directions reach into one another
 } ty_input;
 
 static inline ty_input ty_input_make(ty_rgb value)
 {
-    return (ty_input){value, NULL, NULL, 1.0f, 0.0f, -1, -1};
+    return (ty_input){.value = value,
+                      .scale = 1.0f,
+                      .texture_index = -1,
+                      .attribute_index = -1,
+                      .uv_x = {1.0f, 0.0f},
+                      .uv_y = {0.0f, 1.0f},
+                      .size = 0.1f,
+                      .blend = 0.3f};
 }
 static inline ty_input ty_input_scalar(float value)
 {
     return ty_input_make((ty_rgb){value, value, value});
+}
+// offset + R(angle) (scale * uv), counter-clockwise as v goes up: as KHR_texture_transform but for its v downwards.
+static inline void ty_input_place_uv(ty_input* input, ty_vec2 scale, float angle, ty_vec2 offset)
+{
+    float s, c;
+    ty_sincos(angle, &s, &c);
+    input->uv_x = (ty_vec2){scale.x * c, scale.x * s};
+    input->uv_y = (ty_vec2){-scale.y * s, scale.y * c};
+    input->uv_t = offset;
 }
 
 typedef struct ty_param_list

@@ -66,6 +66,8 @@ TY_CHECKED ty_status ty_mip_texture_create(ty_mip_cache* cache, const ty_mip_tex
                                            ty_error* error);
 void ty_mip_texture_destroy(ty_mip_texture* texture); // NULL is allowed
 
+int ty_mip_texture_frame_count(const ty_mip_texture* texture); // 1 for a single image
+
 // Reads every file to the end without keeping anything: they are images, and of one size. For `check`.
 TY_CHECKED ty_status ty_mip_texture_verify(const ty_mip_texture* texture, ty_error* error);
 

@@ -6,6 +6,7 @@
 #include <tsuya/base/workers.h>
 #include <tsuya/geometry/trace.h>
 #include <tsuya/image/color.h>
+#include <tsuya/image/mip_texture.h>
 #include <tsuya/image/texture.h>
 #include <tsuya/shading/material.h>
 
@@ -206,8 +207,11 @@ typedef struct ty_scene
     int light_group_count;     // at most TY_LIGHT_GROUPS
     const bool** light_links;  // [light_link_count] -> [light_count + object_count], lights before emitting objects
     int light_link_count;      // the first is NULL: all of them
-    ty_texture** textures;
+    ty_texture** textures; // that light_images point to
     int texture_count;
+    ty_mip_cache* texture_cache;       // NULL when no material has textures
+    ty_mip_texture** surface_textures; // of materials, at this frame
+    int surface_texture_count;
     const char** attribute_names;
     int attribute_count;
     ty_depth_field** depth_fields; // by prototype
@@ -231,6 +235,7 @@ typedef struct ty_scene_options
     const char* ocio;         // --ocio or NULL
     const char* isa;          // --isa or NULL
     const char* cache_folder; // NULL = $TSUYA_CACHE, else $XDG_CACHE_HOME/tsuya, else ~/.cache/tsuya
+    uint64_t texture_bytes;   // of textures in memory at a time; 0 = TY_MIP_CACHE_BYTES. Changes no picture.
     bool sandbox;             // no path outside the scene's folder
     bool quick;               // half size and 16 samples, as overrides before all others
     bool check_only;          // read and verify everything, but make no asset and build no tree

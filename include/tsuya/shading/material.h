@@ -6,7 +6,7 @@
 #include <tsuya/base/rng.h>
 #include <tsuya/base/status.h>
 #include <tsuya/geometry/trace.h>
-#include <tsuya/image/texture.h>
+#include <tsuya/image/mip_texture.h>
 
 typedef struct ty_material ty_material;       // opaque, const after creation
 typedef struct ty_depth_field ty_depth_field; // opaque: per-vertex depth and curvature of a prototype, for `depth`
@@ -84,7 +84,7 @@ void ty_depth_field_destroy(ty_depth_field* field); // NULL is allowed
 typedef struct ty_shading_context
 {
     const ty_world* world;
-    const ty_texture* const* textures;            // by texture_index
+    const ty_mip_texture* const* textures;        // by texture_index, all set to the time
     const ty_depth_field* const* depth_fields;    // by prototype, NULL entries where not needed
     const float* const* const* object_attributes; // [object][attribute_index] -> [instance], NULL where absent
     const ty_mesh_attribute* const* const* vertex_attributes; // [prototype][attribute_index], NULL where absent
@@ -93,6 +93,7 @@ typedef struct ty_shading_context
 // The value of an input at a point: value * (offset + scale * texel or attribute); value alone where neither is
 // present. An attribute is that of the instance, else that of the mesh's vertices: one component is grey, of two the
 // third is 0, a fourth is left out; a float takes the first.
+// Textures are averaged over the point's footprint.
 ty_rgb ty_input_color(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point);
 float ty_input_float(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point);
 

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the texture of an input lies on the surface, and which of its channels counts.
+#include "params_read.h"
+
+static const char* const mappings[] = {"uv", "triplanar", NULL};
+static const char* const channels[] = {"all", "r", "g", "b", "a", "luminance", NULL};
+
+typedef struct placement
+{
+    float scale[2], offset[2];
+    float rotate;
+} placement;
+
+static void placement_default(void* def)
+{
+    *(placement*)def = (placement){.scale = {1.0f, 1.0f}};
+}
+
+static const ty_param placement_rows[] = {
+    {.name = "scale",
+     .type = TY_PARAM_FLOAT2,
+     .unit = "",
+     .minimum = -1e6,
+     .maximum = 1e6,
+     .offset = offsetof(placement, scale)},
+    {.name = "offset",
+     .type = TY_PARAM_FLOAT2,
+     .unit = "",
+     .minimum = -1e6,
+     .maximum = 1e6,
+     .offset = offsetof(placement, offset)},
+    {.name = "rotate",
+     .type = TY_PARAM_FLOAT,
+     .unit = "deg",
+     .minimum = -36000,
+     .maximum = 36000,
+     .offset = offsetof(placement, rotate)},
+};
+
+static const ty_param_table placement_table = {.name = "uv",
+                                               .size = sizeof(placement),
+                                               .set_default = placement_default,
+                                               .params = placement_rows,
+                                               .count = TY_PARAM_COUNT(placement_rows)};
+
+static const ty_param rows[] = {
+    {.name = "mapping", .type = TY_PARAM_ENUM, .unit = "", .choices = mappings, .offset = offsetof(ty_input, mapping)},
+    {.name = "channel", .type = TY_PARAM_ENUM, .unit = "", .choices = channels, .offset = offsetof(ty_input, channel)},
+    {.name = "size",
+     .type = TY_PARAM_FLOAT,
+     .unit = "m",
+     .minimum = 1e-6,
+     .maximum = 1e6,
+     .offset = offsetof(ty_input, size)},
+    {.name = "blend",
+     .type = TY_PARAM_FLOAT,
+     .unit = "",
+     .minimum = 0,
+     .maximum = 1,
+     .offset = offsetof(ty_input, blend)},
+};
+
+bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* input)
+{
+    bool good = true;
+    for (int i = 0; i < TY_PARAM_COUNT(rows); ++i)
+    {
+        ty_node* value = ty_node_get(node, rows[i].name);
+        if (!value)
+            continue;
+        good &= ty_param_read(reader, value, &rows[i], (char*)input + rows[i].offset);
+        if (i > 1 && input->mapping != TY_MAPPING_TRIPLANAR)
+        {
+            ty_report(reader->errors, value->place, TY_BAD_INPUT, "'%s' means nothing without 'mapping: triplanar'",
+                      rows[i].name);
+            good = false;
+        }
+    }
+    ty_node* uv = ty_node_get(node, "uv");
+    placement place;
+    if (!uv)
+        return good;
+    if (!ty_params_read(reader, uv, &placement_table, &place, NULL))
+        return false;
+    ty_input_place_uv(input, (ty_vec2){place.scale[0], place.scale[1]}, place.rotate,
+                      (ty_vec2){place.offset[0], place.offset[1]});
+    return good;
+}
