@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parameter tables of a root recipe and their defaults.
+#include <tsuya/generate/roots_recipe.h>
+
+ty_roots_recipe ty_roots_recipe_default(void)
+{
+    ty_roots_recipe recipe = {
+        .host = {.kind = TY_ROOTS_HOST_SPHERE, .shape = ty_shape_def_default(), .floor = true},
+        .trunk = {0.03f, 0.012f, {0.0f, 0.0f, 0.0f}},
+        .count = 11,
+        .radius = 4.2e-3f,
+        .variation = 0.3f,
+        .tip = 0.7e-3f,
+        .taper = 0.2f,
+        .length = 0.35f,
+        .growth = {.inertia = 0.8f,
+                   .gravity = 0.14f,
+                   .wander = 0.13f,
+                   .hold = 1.5f,
+                   .overhang = ty_radians(35.0f),
+                   .sink = 0.25f,
+                   .flatten = 0.75f},
+        .branch =
+            {.spacing = 0.024f, .angle = ty_radians(42.0f), .share = {0.45f, 0.75f}, .exponent = 2.3f, .levels = 3},
+        .join = 0.8f,
+        .bark = 0.08f,
+        .detail = 0.6e-3f,
+        .seed = {7},
+    };
+    recipe.host.shape.radius = 0.04f;
+    return recipe;
+}
+
+#define FIELD(name, type, unit, low, high, member, help)                                                               \
+    {                                                                                                                  \
+        name, type, unit, low, high, NULL, NULL, offsetof(OWNER, member), help, false                                  \
+    }
+#define GROUP(name, table, member, help)                                                                               \
+    {                                                                                                                  \
+        name, TY_PARAM_GROUP, "", 0, 0, NULL, table, offsetof(OWNER, member), help, false                              \
+    }
+#define TABLE(name, heading, help, rows)                                                                               \
+    static const ty_param_table name = {heading, help, sizeof(OWNER), set_##name, rows, TY_PARAM_COUNT(rows)}
+
+// --- host ---
+
+static const char* const host_kinds[] = {"sphere", "ellipsoid", "box", "cylinder", "mesh", NULL};
+
+static void set_host_table(void* def)
+{
+    *(ty_roots_host_def*)def = ty_roots_recipe_default().host;
+}
+
+#define OWNER ty_roots_host_def
+static const ty_param host_rows[] = {
+    {"shape", TY_PARAM_ENUM, "", 0, 0, host_kinds, NULL, offsetof(OWNER, kind), "what roots grow on", false},
+    FIELD("mesh", TY_PARAM_PATH, "", 0, 0, mesh, "a mesh, with shape mesh; it may be open"),
+    FIELD("radius", TY_PARAM_FLOAT, "m", 0, 1e4, shape.radius, "of sphere and cylinder"),
+    FIELD("size", TY_PARAM_FLOAT3, "m", 0, 1e4, shape.size, "semi-axes of the ellipsoid, half extents of the box"),
+    FIELD("height", TY_PARAM_FLOAT, "m", 0, 1e4, shape.height, "of the cylinder"),
+    FIELD("rounding", TY_PARAM_FLOAT, "m", 0, 1e4, shape.rounding, "edges of box and cylinder"),
+    FIELD("divisions", TY_PARAM_INT, "", 8, 4096, shape.divisions, "segments around; roots feel facets"),
+    FIELD("floor", TY_PARAM_BOOL, "", 0, 0, floor, "it stands on a plane at its lowest point; roots go on over it"),
+};
+TABLE(host_table, "roots.host", "What the roots hold on to; it is no part of the result.", host_rows);
+#undef OWNER
+
+// --- trunk ---
+
+static void set_trunk_table(void* def)
+{
+    *(ty_roots_trunk_def*)def = ty_roots_recipe_default().trunk;
+}
+
+#define OWNER ty_roots_trunk_def
+static const ty_param trunk_rows[] = {
+    FIELD("height", TY_PARAM_FLOAT, "m", 0, 1e3, height,
+          "of its cut above the highest point of the host; 0 = no trunk"),
+    FIELD("radius", TY_PARAM_FLOAT, "mm", 0.1, 1e6, radius, "where the main roots leave it"),
+    FIELD("lean", TY_PARAM_FLOAT3, "m", -1e3, 1e3, lean, "the place of its cut against that above the host's middle"),
+};
+TABLE(trunk_table, "roots.trunk", "Where the main roots come from.", trunk_rows);
+#undef OWNER
+
+// --- growth ---
+
+static void set_growth_table(void* def)
+{
+    *(ty_roots_growth_def*)def = ty_roots_recipe_default().growth;
+}
+
+#define OWNER ty_roots_growth_def
+static const ty_param growth_rows[] = {
+    FIELD("inertia", TY_PARAM_FLOAT, "", 0, 1, inertia, "weight of the direction so far"),
+    FIELD("gravity", TY_PARAM_FLOAT, "", 0, 1, gravity, "weight of down"),
+    FIELD("wander", TY_PARAM_FLOAT, "", 0, 1, wander, "weight of chance"),
+    FIELD("hold", TY_PARAM_FLOAT, "", 0, 100, hold, "how far from the host a root still takes to it, of its radius"),
+    FIELD("overhang", TY_PARAM_FLOAT, "deg", 0, 90, overhang, "undersides steeper than this are let go; 90 = none"),
+    FIELD("sink", TY_PARAM_FLOAT, "", 0, 0.9, sink, "depth under the surface of the host, of the radius"),
+    FIELD("flatten", TY_PARAM_FLOAT, "", 0.3, 1, flatten, "height of a section that lies on the host, of its width"),
+};
+TABLE(growth_table, "roots.growth", "How a tip finds its way.", growth_rows);
+#undef OWNER
+
+// --- branches ---
+
+static void set_branch_table(void* def)
+{
+    *(ty_roots_branch_def*)def = ty_roots_recipe_default().branch;
+}
+
+#define OWNER ty_roots_branch_def
+static const ty_param branch_rows[] = {
+    FIELD("spacing", TY_PARAM_FLOAT, "mm", 1, 1e6, spacing, "mean length of a root between its branches"),
+    FIELD("angle", TY_PARAM_FLOAT, "deg", 5, 85, angle, "mean, from the parent's direction"),
+    FIELD("share", TY_PARAM_FLOAT2, "", 0.1, 0.95, share, "radius of a branch against its parent's: from, to"),
+    FIELD("exponent", TY_PARAM_FLOAT, "", 1.5, 3, exponent, "n of the pipe model: r^n is the sum of those after it"),
+    FIELD("levels", TY_PARAM_INT, "", 0, 8, levels, "0 = main roots alone, 1 = with their branches, ..."),
+};
+TABLE(branch_table, "roots.branch", "How roots divide.", branch_rows);
+#undef OWNER
+
+// --- the recipe ---
+
+static void set_recipe_table(void* def)
+{
+    *(ty_roots_recipe*)def = ty_roots_recipe_default();
+}
+
+#define OWNER ty_roots_recipe
+static const ty_param recipe_rows[] = {
+    GROUP("host", &host_table, host, "what they hold on to"),
+    GROUP("trunk", &trunk_table, trunk, "where they come from"),
+    FIELD("count", TY_PARAM_INT, "", 1, 500, count, "main roots"),
+    FIELD("radius", TY_PARAM_FLOAT, "mm", 0.1, 1e6, radius, "of a main root at the trunk"),
+    FIELD("variation", TY_PARAM_FLOAT, "", 0, 0.8, variation, "of the radii, relative"),
+    FIELD("tip", TY_PARAM_FLOAT, "mm", 0.05, 1e6, tip, "radius at which a root ends"),
+    FIELD("taper", TY_PARAM_FLOAT, "m", 1e-3, 1e6, taper, "length over which a radius falls to 37 %"),
+    FIELD("length", TY_PARAM_FLOAT, "m", 1e-3, 1e6, length, "of a root at most"),
+    GROUP("growth", &growth_table, growth, "how they find their way"),
+    GROUP("branch", &branch_table, branch, "how they divide"),
+    FIELD("join", TY_PARAM_FLOAT, "", 0, 2, join, "over which distance roots run together, of the thinner's radius"),
+    FIELD("bark", TY_PARAM_FLOAT, "", 0, 0.4, bark, "depth of flutes and swellings, of the radius"),
+    FIELD("detail", TY_PARAM_FLOAT, "mm", 0.02, 1e6, detail, "size of the surface's cells, at most the tip"),
+    FIELD("seed", TY_PARAM_SEED, "", 0, 0, seed, "another seed, other roots"),
+};
+TABLE(recipe_table, "roots", "Roots that come down over a host, hold on to it, branch and grow together.", recipe_rows);
+#undef OWNER
+
+const ty_param_table* ty_roots_recipe_params(void)
+{
+    return &recipe_table;
+}
+
+static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_error* error)
+{
+    return ty_roots_make(def, workers, &out->mesh, error);
+}
+
+const ty_generator ty_roots_generator = {
+    .kind = "roots",
+    .build_id = "roots 1",
+    .product = TY_PRODUCT_MESH,
+    .params = &recipe_table,
+    .make = make,
+};

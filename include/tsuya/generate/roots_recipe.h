@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// The recipe of roots that come down over a host, hold on to it, branch, taper and grow together. `kind: roots`.
+#pragma once
+#include <tsuya/base/rng.h>
+#include <tsuya/generate/asset.h>
+#include <tsuya/geometry/shape.h>
+
+typedef enum ty_roots_host_kind
+{
+    TY_ROOTS_HOST_SPHERE,
+    TY_ROOTS_HOST_ELLIPSOID,
+    TY_ROOTS_HOST_BOX,
+    TY_ROOTS_HOST_CYLINDER,
+    TY_ROOTS_HOST_MESH, // any mesh with normals, open ones too
+} ty_roots_host_kind;
+
+// The fields of shape that apply are those of the scene's shape of the same name, with the same defaults.
+typedef struct ty_roots_host_def
+{
+    int kind;           // ty_roots_host_kind
+    const char* mesh;   // path
+    ty_shape_def shape; // its kind is set from kind
+    bool floor;         // it stands on a plane, over which the roots go on
+} ty_roots_host_def;
+
+typedef struct ty_roots_trunk_def
+{
+    float height; // m, above the host's highest point
+    float radius; // m
+    ty_vec3 lean; // m, where the middle of its top stands against the middle of the host
+} ty_roots_trunk_def;
+
+typedef struct ty_roots_growth_def
+{
+    float inertia;  // weights of the next direction: the last one,
+    float gravity;  // down,
+    float wander;   // and chance
+    float hold;     // how far from the host a root still takes to it, of its radius
+    float overhang; // rad, from the horizontal: steeper undersides are let go
+    float sink;     // depth under the host's surface, of the radius, 0..0.9
+    float flatten;  // height of a section that lies on the host against its width, 0.3..1
+} ty_roots_growth_def;
+
+typedef struct ty_roots_branch_def
+{
+    float spacing;  // m, mean, between the branches of a root
+    float angle;    // rad, from the parent's direction
+    float share[2]; // radius of a branch against its parent's
+    float exponent; // of the pipe model: r^n = sum of r_i^n
+    int levels;     // 0 = none, 1 = branches of main roots, ...
+} ty_roots_branch_def;
+
+typedef struct ty_roots_recipe
+{
+    ty_roots_host_def host;
+    ty_roots_trunk_def trunk;
+    int count;       // main roots, 1..500
+    float radius;    // m, of a main root where it leaves the trunk
+    float variation; // of the radii, relative
+    float tip;       // m, radius where a root ends
+    float taper;     // m, length over which a radius falls to 1/e
+    float length;    // m, of a root at most
+    ty_roots_growth_def growth;
+    ty_roots_branch_def branch;
+    float join;   // how far from each other roots begin to run together, of the thinner radius, 0..2
+    float bark;   // depth of the relief, of the radius, 0..0.5
+    float detail; // m, size of a cell of the surface
+    ty_seed seed;
+} ty_roots_recipe;
+
+ty_roots_recipe ty_roots_recipe_default(void); // eleven main roots on a ball of 4 cm radius
+const ty_param_table* ty_roots_recipe_params(void);
+// def is a ty_roots_recipe. The mesh is one closed surface, smooth, with uv (turns about the root from the side that is
+// away from the host; metres along it, from the trunk) and the attributes `radius` (m), `level` (0 = main root) and
+// `join` (0..1, how much roots run together there). On failure *out is NULL, else as ty_generator's make.
+TY_CHECKED ty_status ty_roots_make(const void* def, ty_workers* workers, ty_mesh** out, ty_error* error);
+extern const ty_generator ty_roots_generator;
