@@ -17,7 +17,7 @@ static json_t* window_json(const int w[4])
 
 static json_t* attribute_json(const ty_exr_attribute* attribute)
 {
-    static const int value_counts[] = {0, 1, 0, 16, 8, 0};
+    static const int value_counts[] = {0, 1, 0, 16, 8, 0, 0};
     switch (attribute->type)
     {
     case TY_EXR_STRING:
@@ -28,6 +28,8 @@ static json_t* attribute_json(const ty_exr_attribute* attribute)
         return json_pack("[i, i]", attribute->integer[0], attribute->integer[1]);
     case TY_EXR_FLOAT1:
         return json_real(attribute->value[0]);
+    case TY_EXR_ENVMAP:
+        return json_string(attribute->integer[0] == 0 ? "latlong" : "cube");
     case TY_EXR_MATRIX44:
     case TY_EXR_CHROMATICITIES:
         break;

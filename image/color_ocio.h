@@ -21,8 +21,8 @@ extern "C"
     ty_ocio_result ty_ocio_load(const char* path, const char* embedded, ty_ocio** out, char* text, size_t text_size);
     void ty_ocio_close(ty_ocio* ocio); // NULL is allowed
 
-    // Differs between configurations that may convert differently; the files they refer to are part of it. Lives as long
-    // as the configuration.
+    // Differs between configurations that may convert differently; the files they refer to are part of it. Lives as
+    // long as the configuration.
     const char* ty_ocio_identity(const ty_ocio* ocio);
 
     // Whether name is a colour space, an alias or a role.

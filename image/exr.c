@@ -89,6 +89,11 @@ void ty_exr_add_rational(ty_exr* exr, const char* name, int numerator, unsigned 
     attribute->integer[1] = (int)denominator;
 }
 
+void ty_exr_add_latlong(ty_exr* exr)
+{
+    set_attribute(exr, "envmap", TY_EXR_ENVMAP)->integer[0] = 0;
+}
+
 const ty_exr_channel* ty_exr_find_channel(const ty_exr* exr, const char* name)
 {
     for (int i = 0; i < exr->channel_count; i++)

@@ -107,6 +107,10 @@ static bool attribute_value(const exr_attribute_t* from, ty_exr_attribute* to)
         to->integer[0] = from->rational->num;
         to->integer[1] = (int)from->rational->denom;
         return true;
+    case EXR_ATTR_ENVMAP:
+        to->type = TY_EXR_ENVMAP;
+        to->integer[0] = from->uc;
+        return true;
     default:
         return false;
     }

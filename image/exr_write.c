@@ -107,6 +107,8 @@ static exr_result_t write_attribute(exr_context_t context, const ty_exr_attribut
         exr_attr_rational_t rational = {a->integer[0], (uint32_t)a->integer[1]};
         return exr_attr_set_rational(context, 0, a->name, &rational);
     }
+    case TY_EXR_ENVMAP:
+        return exr_attr_set_envmap(context, 0, a->name, (exr_envmap_t)a->integer[0]);
     }
     return EXR_ERR_INVALID_ATTR;
 }

@@ -9,7 +9,6 @@ void ty_integrator_record(const ty_integrator* in, const ty_bsdf* bsdf, ty_film_
     out->albedo = ty_bsdf_albedo(bsdf);
     out->normal = bsdf->frame.n;
     out->position = point->position;
-    out->depth = ty_camera_depth(&in->camera, point->position);
     out->instance = in->first_instance[point->object] + point->instance;
 }
 

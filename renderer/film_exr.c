@@ -156,6 +156,18 @@ static const char* integrator_name(int kind)
     return names[kind];
 }
 
+// Whole rates, those of television (24000/1001), else thousandths.
+static void add_frame_rate(float fps, ty_exr* exr)
+{
+    static const unsigned denominators[] = {1, 1001, 1000};
+    double rate = fps > 0.0f ? (double)fps : 24.0;
+    unsigned d = 1000;
+    for (int i = 2; i >= 0; --i)
+        if (fabs(rate * denominators[i] - floor(rate * denominators[i] + 0.5)) < 1e-5 * rate * denominators[i])
+            d = denominators[i];
+    ty_exr_add_rational(exr, "framesPerSecond", (int)floor(rate * d + 0.5), d);
+}
+
 // What is the same for every part of one picture; ty_film_merge carries it over.
 static void add_scene_attributes(const ty_film* film, const ty_scene* scene, ty_exr* exr)
 {
@@ -167,8 +179,8 @@ static void add_scene_attributes(const ty_film* film, const ty_scene* scene, ty_
     ty_exr_add_chromaticities(exr, acescg);
     ty_camera_world_to_camera(&camera, matrix);
     ty_exr_add_matrix(exr, "worldToCamera", matrix);
-    ty_camera_world_to_ndc(&camera, matrix);
-    ty_exr_add_matrix(exr, "worldToNDC", matrix);
+    if (ty_camera_world_to_ndc(&camera, matrix))
+        ty_exr_add_matrix(exr, "worldToNDC", matrix);
     snprintf(seed, sizeof seed, "%" PRIu64, scene->render.seed.value);
     ty_exr_add_string(exr, "tsuya/version", TSUYA_VERSION);
     ty_exr_add_string(exr, "tsuya/isa", scene->world ? ty_world_isa(scene->world) : "");
@@ -178,6 +190,10 @@ static void add_scene_attributes(const ty_film* film, const ty_scene* scene, ty_
     ty_exr_add_string(exr, "tsuya/integrator", integrator_name(scene->render.integrator));
     ty_exr_add_string(exr, "tsuya/recipe", scene->recipe ? scene->recipe : "");
     ty_exr_add_int(exr, TY_KEY_PLANNED, scene->render.samples);
+    if (camera.projection == TY_PROJECTION_EQUIRECTANGULAR)
+        ty_exr_add_latlong(exr);
+    add_frame_rate(scene->timeline.fps, exr);
+    ty_exr_add_float(exr, "tsuya/frame", (float)scene->frame);
 }
 
 static bool is_uniform(const ty_film* film, int samples)

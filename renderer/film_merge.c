@@ -8,7 +8,8 @@
 // What every part must share, in the order in which a picture carries it.
 static const char* const carried[] = {"chromaticities",   "worldToCamera", "worldToNDC",      "tsuya/version",
                                       "tsuya/isa",        "tsuya/hash",    "tsuya/overrides", "tsuya/seed",
-                                      "tsuya/integrator", "tsuya/recipe",  TY_KEY_PLANNED};
+                                      "tsuya/integrator", "tsuya/recipe",  TY_KEY_PLANNED,    "envmap",
+                                      "framesPerSecond",  "tsuya/frame"};
 
 enum
 {
@@ -43,6 +44,9 @@ static void copy_attribute(const ty_exr_attribute* a, ty_exr* to)
     case TY_EXR_RATIONAL:
         ty_exr_add_rational(to, a->name, a->integer[0], (unsigned)a->integer[1]);
         break;
+    case TY_EXR_ENVMAP:
+        ty_exr_add_latlong(to);
+        break;
     }
 }
 
@@ -53,9 +57,16 @@ static bool same_attribute(const ty_exr_attribute* a, const ty_exr_attribute* b)
     if (a->type == TY_EXR_STRING)
         return strcmp(a->text ? a->text : "", b->text ? b->text : "") == 0;
     size_t floats = a->type == TY_EXR_MATRIX44 ? 16 : a->type == TY_EXR_CHROMATICITIES ? 8 : 1;
-    if (a->type == TY_EXR_INT1 || a->type == TY_EXR_RATIONAL)
-        return a->integer[0] == b->integer[0] && (a->type == TY_EXR_INT1 || a->integer[1] == b->integer[1]);
+    if (a->type == TY_EXR_INT1 || a->type == TY_EXR_RATIONAL || a->type == TY_EXR_ENVMAP)
+        return a->integer[0] == b->integer[0] && (a->type != TY_EXR_RATIONAL || a->integer[1] == b->integer[1]);
     return memcmp(a->value, b->value, floats * sizeof(float)) == 0;
+}
+
+// A picture of all directions says so, and has no matrix to the picture's plane.
+static bool is_wanted(const ty_exr* exr, const char* name)
+{
+    bool all_round = ty_exr_find_attribute(exr, "envmap") != NULL;
+    return strcmp(name, "envmap") == 0 ? all_round : strcmp(name, "worldToNDC") != 0 || !all_round;
 }
 
 static ty_status read_part(const char* path, ty_exr** exr, ty_film** film, ty_error* error)
@@ -65,7 +76,7 @@ static ty_status read_part(const char* path, ty_exr** exr, ty_film** film, ty_er
     if (status)
         return status;
     for (int i = 0; i < CARRIED_COUNT && !status; ++i)
-        if (!ty_exr_find_attribute(*exr, carried[i]))
+        if (is_wanted(*exr, carried[i]) && !ty_exr_find_attribute(*exr, carried[i]))
             status = ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "not a part: attribute %s is missing", carried[i]);
     if (!status)
         status = ty_film_from_part(*exr, path, film, error);
@@ -76,7 +87,8 @@ static ty_status check_same(const ty_exr* whole, const ty_film* sum, const ty_ex
                             const char* path, ty_error* error)
 {
     for (int i = 0; i < CARRIED_COUNT; ++i)
-        if (!same_attribute(ty_exr_find_attribute(whole, carried[i]), ty_exr_find_attribute(exr, carried[i])))
+        if (is_wanted(whole, carried[i]) &&
+            !same_attribute(ty_exr_find_attribute(whole, carried[i]), ty_exr_find_attribute(exr, carried[i])))
             return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "its %s differs from the first part's", carried[i]);
     const ty_film_setup *a = &sum->setup, *b = &film->setup;
     if (memcmp(a->size, b->size, sizeof a->size) != 0 || memcmp(a->crop, b->crop, sizeof a->crop) != 0)
@@ -129,7 +141,8 @@ static ty_status write_joined(const ty_exr* first, const ty_film* sum, int begin
     ty_exr* exr = ty_exr_create(first->data_window, first->display_window);
     ty_film_add_channels(sum, false, exr);
     for (int i = 0; i < CARRIED_COUNT; ++i)
-        copy_attribute(ty_exr_find_attribute(first, carried[i]), exr);
+        if (is_wanted(first, carried[i]))
+            copy_attribute(ty_exr_find_attribute(first, carried[i]), exr);
     ty_film_add_range(begin, end, exr);
     if (begin != 0 || end != ty_exr_find_attribute(first, TY_KEY_PLANNED)->integer[0])
         ty_film_add_part_channels(sum, exr);

@@ -9,8 +9,10 @@
 
 typedef struct ty_integrator
 {
-    const ty_scene* scene; // borrowed
-    ty_camera camera;
+    const ty_scene* scene;   // borrowed
+    ty_camera camera;        // at the frame's own moment
+    ty_camera* camera_steps; // over the open shutter; owned, NULL = it stands still
+    int camera_step_count;
     ty_pixel_filter filter;
     ty_light_set lights;
     ty_sobol sobol;

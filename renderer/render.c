@@ -33,6 +33,11 @@ static void integrator_init(ty_integrator* in, const ty_scene* scene, const ty_f
 {
     in->scene = scene;
     ty_camera_init(&in->camera, &scene->camera, film->setup.size);
+    in->camera_step_count = scene->camera_step_count;
+    if (in->camera_step_count > 1)
+        in->camera_steps = TY_ALLOC(ty_camera, in->camera_step_count);
+    for (int i = 0; in->camera_steps && i < in->camera_step_count; ++i)
+        ty_camera_init(&in->camera_steps[i], &scene->camera_steps[i], film->setup.size);
     ty_pixel_filter_init(&in->filter, (ty_filter_kind)scene->film.filter, scene->film.filter_width);
     ty_light_set_init(&in->lights, scene, film->group_count > 0);
     ty_sobol_init(&in->sobol);
@@ -49,6 +54,7 @@ static void integrator_term(ty_integrator* in)
 {
     ty_light_set_term(&in->lights);
     ty_free(in->first_instance);
+    ty_free(in->camera_steps);
 }
 
 static bool comes_before(const int a[3], const int b[3]) // in (y, x, sample) order
@@ -69,6 +75,21 @@ static void count_fate(ty_counters* counters, ty_sample_fate fate, int x, int y,
         memcpy(counters->first_nonfinite, place, sizeof place);
 }
 
+// The camera that takes a sample: somewhere between its poses while it moves. moved is room for that.
+static const ty_camera* camera_at(const ty_integrator* in, const ty_sampler* sampler, float* time, ty_camera* moved)
+{
+    *time = 0.0f;
+    if (!in->scene->moves)
+        return &in->camera;
+    float u[4];
+    ty_sampler_4d(sampler, TY_GROUP_TIME, u);
+    *time = u[0];
+    if (!in->camera_steps)
+        return &in->camera;
+    ty_camera_at(in->camera_steps, in->camera_step_count, *time, moved);
+    return moved;
+}
+
 static void render_pixel(render* r, int x, int y, ty_counters* counters)
 {
     const ty_integrator* in = &r->integrator;
@@ -81,12 +102,18 @@ static void render_pixel(render* r, int x, int y, ty_counters* counters)
         ty_sampler_4d(&sampler, TY_GROUP_CAMERA, u);
         float px = (float)x + 0.5f + ty_pixel_filter_sample(&in->filter, u[0]);
         float py = (float)y + 0.5f + ty_pixel_filter_sample(&in->filter, u[1]);
-        ty_ray ray = ty_camera_ray(&in->camera, px, py, (ty_vec2){u[2], u[3]});
+        ty_camera moved;
+        float time;
+        const ty_camera* camera = camera_at(in, &sampler, &time, &moved);
+        ty_ray ray = ty_camera_ray(camera, px, py, (ty_vec2){u[2], u[3]});
+        ray.time = time;
         ty_film_sample sample = {0};
         if (debug)
             ty_debug_sample(in, &sampler, ray, counters, &sample);
         else
             ty_path_sample(in, &sampler, ray, counters, &sample);
+        if (sample.hit)
+            sample.depth = ty_camera_depth(camera, sample.position);
         count_fate(counters, ty_pixel_sums_add(&sums, &sample, (uint32_t)s), x, y, s);
     }
     counters->camera_rays += (uint64_t)(r->pass_end - r->pass_begin);

@@ -31,6 +31,7 @@ ty_sampler ty_sampler_make(const ty_sobol* sobol, ty_seed seed, int x, int y, ui
 // Dimension groups. What a group is used for never depends on what happened before, so that a decision at one bounce
 // shifts no dimension of a later one.
 #define TY_GROUP_CAMERA 0u        // filter x, y, lens x, y
+#define TY_GROUP_TIME 0x30000000u // moment within the shutter, where anything moves
 #define TY_GROUP_COAT 0x40000000u // and the next one: direct light by the coat at the camera's vertex
 static inline uint32_t ty_group_scatter(int bounce)
 {

@@ -42,6 +42,8 @@ typedef struct ty_asset
     ty_frames_asset_def frames_def; // FRAMES, and recipes of frames
     bool used;
     bool is_texture;         // some material uses it as one
+    bool bounds_known;
+    ty_bounds bounds;        // of everything, in the asset's own space
     ty_mesh* mesh;           // once loaded
     ty_aggregate* aggregate; // once loaded
     const char* frames;      // RECIPE of frames: the pattern, once made
@@ -61,7 +63,10 @@ typedef struct ty_object_entry
     const ty_node* slots; // `materials`, NULL = none
     ty_affine transform;
     ty_object_flags flags;
-    bool flags_known; // found when the world was built first
+    bool flags_known;               // found when the world was built first
+    int keys;                       // index in the timeline's entries, -1 = none
+    ty_affine *steps, *built_steps; // over the shutter: now, and as the world has them; NULL where nothing moves
+    int step_count, step_capacity;  // of built_steps, 0 = not known; of both
 } ty_object_entry;
 
 // A texture of materials.
@@ -123,6 +128,8 @@ typedef struct ty_loader
     ty_node* frame_node; // `frame:` of the file; NULL = the recipe does not tell it
     ty_seed seed;        // as written in `render`
     bool world_changed;  // objects stand elsewhere than in the world
+    int focus_object;    // of the camera, -1 = none
+    int camera_capacity; // of the scene's camera_steps
 } ty_loader;
 
 // loader.c
@@ -174,8 +181,12 @@ void ty_read_objects(ty_loader* loader);
 // One of them again, for the values that its keys have now.
 void ty_read_material(ty_loader* loader, int index);
 void ty_read_camera(ty_loader* loader);
+void ty_focus_camera(ty_loader* loader); // on its object, where that stands now
 void ty_read_turntable(ty_loader* loader);
-bool ty_object_turn(const ty_scene* scene, ty_affine* map); // of the turntable; false = none
+void ty_pose_object(ty_loader* loader, int index);            // its transform alone
+bool ty_turntable_map(const ty_scene* scene, ty_affine* map); // the turn at this moment; false = none
+void ty_read_section(ty_loader* loader, const char* name, const ty_param_table* table, void* def); // or its defaults
+ty_place ty_key_place(const ty_node* map, const char* key); // of its value, else of the mapping
 void ty_read_light(ty_loader* loader, int index);
 void ty_read_object(ty_loader* loader, int index);
 // light_links.c
@@ -203,4 +214,5 @@ void ty_rebuild_world(ty_loader* loader); // the same objects, where they stand 
 // scene_frame.c
 void ty_frame_begin(ty_loader* loader);      // the sections of time; the tree at the scene's frame
 void ty_frame_check_keys(ty_loader* loader); // reads every keyed entry at every key: ranges hold everywhere then
+void ty_pose_scene(ty_loader* loader);       // scene_motion.c: camera and objects over the open shutter
 void ty_frame_write_recipe(ty_loader* loader);

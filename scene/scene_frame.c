@@ -197,40 +197,30 @@ static bool section_changed(const ty_timeline* timeline, ty_section_kind section
     return false;
 }
 
-// A turn moves the camera, or every object.
-static void read_turned(ty_loader* loader)
+// What is not posed: materials and lights are as they are at the frame's moment.
+static void read_changed(ty_loader* loader)
 {
-    ty_scene* scene = loader->scene;
-    bool turned = section_changed(&loader->timeline, TY_SECTION_TURNTABLE);
-    bool moved = section_changed(&loader->timeline, TY_SECTION_CAMERA);
-    if (turned)
-        ty_read_turntable(loader);
-    if (turned || moved)
+    ty_timeline* timeline = &loader->timeline;
+    for (int i = 0; i < timeline->entry_count; ++i)
     {
-        ty_read_camera(loader);
-        ++scene->rebuilds.cameras;
+        const ty_animated* entry = &timeline->entries[i];
+        if (!entry->changed)
+            continue;
+        if (entry->section == TY_SECTION_MATERIAL || entry->section == TY_SECTION_LIGHT)
+            read_entry(loader, entry);
+        count_entry(&loader->scene->rebuilds, entry->section);
     }
-    if (scene->turntable.turn != TY_TURN_OBJECTS || (!turned && (!moved || scene->turntable.has_about)))
-        return;
-    for (int i = 0; i < scene->object_count; ++i)
-        ty_read_object(loader, i);
-    scene->rebuilds.objects += scene->object_count;
 }
 
 static void go_to(ty_loader* loader, double frame)
 {
     set_time(loader, frame);
-    read_turned(loader);
-    for (int i = 0; i < loader->timeline.entry_count; ++i)
-    {
-        ty_animated* entry = &loader->timeline.entries[i];
-        bool changed = entry->changed;
-        entry->changed = false;
-        if (!changed || entry->section == TY_SECTION_CAMERA || entry->section == TY_SECTION_TURNTABLE)
-            continue;
-        read_entry(loader, entry);
-        count_entry(&loader->scene->rebuilds, entry->section);
-    }
+    ty_scene_rebuilds* rebuilds = &loader->scene->rebuilds;
+    bool view = section_changed(&loader->timeline, TY_SECTION_CAMERA) ||
+                section_changed(&loader->timeline, TY_SECTION_TURNTABLE);
+    rebuilds->cameras += view;
+    read_changed(loader);
+    ty_pose_scene(loader);
 }
 
 ty_status ty_scene_set_frame(ty_scene* scene, double frame, ty_error_list* errors)

@@ -101,6 +101,9 @@ static void load_stages(ty_loader* loader, int first)
     ty_build_attributes(loader);
     if (loader->errors->count > first)
         return;
+    ty_pose_scene(loader);
+    if (loader->errors->count > first)
+        return;
     record_overrides(loader);
     ty_frame_write_recipe(loader);
     if (loader->errors->count == first && !loader->options->check_only)

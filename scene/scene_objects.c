@@ -86,15 +86,31 @@ static void find_materials(ty_loader* loader, const ty_node* node, ty_object_ent
 static void place_object(ty_loader* loader, const ty_node* node, ty_object_entry* entry)
 {
     const ty_object_def* def = &entry->def;
-    ty_affine turn, inverse, before = entry->transform;
+    ty_affine turn, inverse;
     entry->transform = ty_affine_from_trs(def->translate, ty_quat_euler(def->rotate), def->scale);
-    if (ty_object_turn(loader->scene, &turn))
+    if (loader->scene->turntable.turn == TY_TURN_OBJECTS && ty_turntable_map(loader->scene, &turn))
         entry->transform = ty_affine_multiply(&turn, &entry->transform);
-    loader->world_changed |= memcmp(&before, &entry->transform, sizeof before) != 0;
     const ty_node* scale = ty_node_get(node, "scale");
     if (!ty_affine_invert(&entry->transform, &inverse))
         ty_report(loader->errors, scale ? scale->place : node->place, TY_BAD_INPUT,
                   "'scale': zero along an axis would make the object flat");
+}
+
+void ty_pose_object(ty_loader* loader, int index)
+{
+    static const char* const keys[] = {"translate", "rotate", "scale"};
+    const ty_param_table* table = ty_object_params();
+    const ty_node* node = ty_section(loader, "objects", TY_NODE_LIST)->items[index];
+    ty_object_entry* entry = &loader->objects[index];
+    for (int k = 0; k < TY_PARAM_COUNT(keys); ++k)
+        for (int i = 0; i < table->count; ++i)
+        {
+            ty_node* value = strcmp(table->params[i].name, keys[k]) == 0 ? ty_node_get(node, keys[k]) : NULL;
+            if (value) // what is wrong with it is in the list of errors
+                (void)ty_param_read(&loader->reader, value, &table->params[i],
+                                    (char*)&entry->def + table->params[i].offset);
+        }
+    place_object(loader, node, entry);
 }
 
 void ty_read_object(ty_loader* loader, int index)

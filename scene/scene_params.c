@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables and defaults of film, camera and rendering.
+// Tables and defaults of film, rendering and time.
 #include <tsuya/scene/scene.h>
 
 #define MANY 1e30 // a bound that bounds nothing but infinity
@@ -7,15 +7,6 @@
 ty_film_def ty_film_def_default(void)
 {
     return (ty_film_def){.size = {960, 540}, .filter = TY_FILTER_BLACKMAN_HARRIS, .filter_width = 3.0f, .half = true};
-}
-
-ty_camera_def ty_camera_def_default(void)
-{
-    return (ty_camera_def){.position = {0.0f, 0.0f, 1.0f},
-                           .up = {0.0f, 1.0f, 0.0f},
-                           .vfov = ty_radians(40.0f),
-                           .film_height = 0.024f,
-                           .near_clip = 0.001f};
 }
 
 ty_render_def ty_render_def_default(void)
@@ -41,11 +32,6 @@ ty_turntable_def ty_turntable_def_default(void)
 static void film_default(void* def)
 {
     *(ty_film_def*)def = ty_film_def_default();
-}
-
-static void camera_default(void* def)
-{
-    *(ty_camera_def*)def = ty_camera_def_default();
 }
 
 static void render_default(void* def)
@@ -76,27 +62,6 @@ static const ty_param film_rows[] = {
      "full width of the filter", false},
     {"half", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_film_def, half), "beauty channels as half, else float",
      false},
-};
-
-static const ty_param camera_rows[] = {
-    {"position", TY_PARAM_FLOAT3, "m", -1e9, 1e9, NULL, NULL, offsetof(ty_camera_def, position), "where the eye is",
-     false},
-    {"look_at", TY_PARAM_FLOAT3, "m", -1e9, 1e9, NULL, NULL, offsetof(ty_camera_def, look_at),
-     "the point in the middle of the picture", false},
-    {"up", TY_PARAM_FLOAT3, "", -1e9, 1e9, NULL, NULL, offsetof(ty_camera_def, up),
-     "direction that is up in the picture", false},
-    {"vfov", TY_PARAM_FLOAT, "deg", 0.01, 179, NULL, NULL, offsetof(ty_camera_def, vfov), "vertical field of view",
-     false},
-    {"f_stop", TY_PARAM_FLOAT, "", 0, MANY, NULL, NULL, offsetof(ty_camera_def, f_stop),
-     "aperture number; 0 = everything is sharp", false},
-    {"film_height", TY_PARAM_FLOAT, "mm", 0.01, 10000, NULL, NULL, offsetof(ty_camera_def, film_height),
-     "height of the film, gives the focal length and with f_stop the aperture", false},
-    {"focus_distance", TY_PARAM_FLOAT, "m", 0, MANY, NULL, NULL, offsetof(ty_camera_def, focus_distance),
-     "distance of the sharp plane; 0 = that of focus_point or look_at", false},
-    {"focus_point", TY_PARAM_FLOAT3, "m", -1e9, 1e9, NULL, NULL, offsetof(ty_camera_def, focus_point),
-     "a point on the sharp plane; look_at if not given", false},
-    {"near_clip", TY_PARAM_FLOAT, "m", 0, 1e6, NULL, NULL, offsetof(ty_camera_def, near_clip),
-     "nothing nearer than this is seen", false},
 };
 
 static const ty_param render_rows[] = {
@@ -144,12 +109,6 @@ static const ty_param_table film_table = {"film",
                                           film_default,
                                           film_rows,
                                           TY_PARAM_COUNT(film_rows)};
-static const ty_param_table camera_table = {"camera",
-                                            "A perspective camera, a thin lens when f_stop is above 0.",
-                                            sizeof(ty_camera_def),
-                                            camera_default,
-                                            camera_rows,
-                                            TY_PARAM_COUNT(camera_rows)};
 static const ty_param_table render_table = {
     "render",    "How the picture is computed.", sizeof(ty_render_def), render_default,
     render_rows, TY_PARAM_COUNT(render_rows)};
@@ -157,11 +116,6 @@ static const ty_param_table render_table = {
 const ty_param_table* ty_film_params(void)
 {
     return &film_table;
-}
-
-const ty_param_table* ty_camera_params(void)
-{
-    return &camera_table;
 }
 
 const ty_param_table* ty_render_params(void)

@@ -126,6 +126,12 @@ static ty_object_flags object_flags(const ty_loader* loader, const ty_scene_obje
     return flags;
 }
 
+static ty_motion object_motion(const ty_object_entry* entry)
+{
+    return entry->step_count > 0 ? (ty_motion){entry->built_steps, entry->step_count}
+                                 : ty_motion_at_rest(&entry->transform);
+}
+
 static ty_status add_object(ty_loader* loader, int index, ty_error* error)
 {
     ty_scene* scene = loader->scene;
@@ -138,15 +144,14 @@ static ty_status add_object(ty_loader* loader, int index, ty_error* error)
     ty_status status = TY_OK;
     if (asset->aggregate)
     {
-        status = ty_world_add_aggregate(scene->world, asset->aggregate, ty_motion_at_rest(&entry->transform),
-                                        entry->flags, &number, error);
+        status =
+            ty_world_add_aggregate(scene->world, asset->aggregate, object_motion(entry), entry->flags, &number, error);
     }
     else
     {
         status = ty_world_add_prototype(scene->world, asset->mesh, &prototype, error);
         if (status == TY_OK)
-            status = ty_world_add_object(scene->world, prototype, ty_motion_at_rest(&entry->transform), entry->flags,
-                                         &number, error);
+            status = ty_world_add_object(scene->world, prototype, object_motion(entry), entry->flags, &number, error);
     }
     TY_ASSERT(status != TY_OK || number == (uint32_t)index);
     return status;

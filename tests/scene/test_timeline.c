@@ -288,6 +288,88 @@ static void mistakes_are_told_where_they_stand(void** state)
                       "out of range");
 }
 
+static void lenses_are_checked(void** state)
+{
+    (void)state;
+    fixture_one_error("tsuya: 1\ncamera:\n  focus_object: bowl\n" BODY, 3, 17, "no object is named 'bowl'");
+    fixture_one_error("tsuya: 1\ncamera:\n  focus_object: bal\nassets: { b: { shape: sphere } }\nmaterials: { m: { "
+                      "model: surface } }\nobjects: [{ name: ball, mesh: b, material: m }]\n",
+                      3, 17, "did you mean 'ball'");
+    fixture_one_error("tsuya: 1\ncamera:\n  focus_point: [0, 0, 0]\n  focus_distance: 2\n", 4, 19,
+                      "either 'focus_point' or 'focus_distance'");
+    fixture_one_error("tsuya: 1\ncamera:\n  vfov: 20\n  focal_length: 50\n", 3, 9, "either 'focal_length' or 'vfov'");
+    fixture_one_error("tsuya: 1\ncamera:\n  projection: orthographic\n  f_stop: 2\n", 4, 11, "give 'aperture'");
+    fixture_one_error("tsuya: 1\ncamera:\n  projection: equirectangular\n  f_stop: 2\n", 4, 11, "no lens");
+    fixture_one_error("tsuya: 1\ncamera:\n  projection: fisheye\n", 3, 15, "equirectangular");
+    fixture_one_error("tsuya: 1\ncamera:\n  far_clip: 0.0001\n", 3, 13, "not beyond 'near_clip'");
+    fixture_one_error("tsuya: 1\ncamera:\n  shutter: -1\n", 3, 12, "out of range");
+}
+
+// 36 x 24 mm behind 50 mm sees 26.99 degrees upwards; by its width, the film of a 2:1 picture is 18 mm high.
+static void film_and_focal_length_give_the_angle(void** state)
+{
+    (void)state;
+    load("tsuya: 1\nfilm: { size: [300, 200] }\ncamera: { focal_length: 50 }\n" BODY, false);
+    fixture_near(fixture_scene->camera.vfov * 180.0f / TY_PI, 26.9915f, 1e-3f);
+    load("tsuya: 1\nfilm: { size: [200, 100] }\ncamera: { focal_length: 50, film_width: 36 }\n" BODY, false);
+    fixture_near(fixture_scene->camera.film_height, 0.018f, 1e-7f);
+    fixture_near(fixture_scene->camera.vfov * 180.0f / TY_PI, 20.4079f, 1e-3f);
+}
+
+static void focus_follows_its_object(void** state)
+{
+    (void)state;
+    load(HEAD
+         "camera: { position: [0, 0, 2], focus_object: it, f_stop: 2 }\n"
+         "assets: { ball: { shape: sphere, divisions: 8, radius: 0.1 } }\nmaterials: { m: { model: surface } }\n"
+         "objects: [{ name: it, mesh: ball, material: m, translate: { keys: { 1: [0, 0, 0], 11: [0, 0, 1] } } }]\n",
+         true);
+    set_frame(6);
+    fixture_near(fixture_scene->camera.focus_point.z, 0.5f, 1e-6f);
+    assert_true(fixture_scene->camera.has_focus_point);
+    set_frame(11);
+    fixture_near(fixture_scene->camera.focus_point.z, 1.0f, 1e-6f);
+}
+
+// Camera and objects have poses over the open shutter where they move, and one where they do not.
+static void poses_span_the_shutter(void** state)
+{
+    (void)state;
+    static const char text[] =
+        HEAD "camera: { position: { keys: { 1: [0, 0, 2], 11: [10, 0, 2] } }, look_at: [0, 0, -9], shutter: 0.5, "
+             "motion_steps: "
+             "3, shutter_position: %s }\n"
+             "assets: { ball: { shape: sphere, divisions: 8, radius: 0.1 } }\nmaterials: { m: { model: surface } }\n"
+             "objects:\n"
+             "  - { mesh: ball, material: m, translate: { keys: { 5: [0, 0, 0], 7: [0, 4, 0] } } }\n"
+             "  - { mesh: ball, material: m }\n";
+    static const char* const positions[] = {"center", "start", "end"};
+    for (int i = 0; i < 3; ++i)
+    {
+        char* scene_text = ty_string_format(text, positions[i]);
+        load(scene_text, true);
+        ty_free(scene_text);
+        const ty_scene* scene = fixture_scene;
+        float begin = i == 0 ? -0.25f : i == 1 ? 0.0f : -0.5f;
+        set_frame(6);
+        assert_true(scene->moves);
+        assert_int_equal(scene->camera_step_count, 3);
+        for (int k = 0; k < 3; ++k)
+            fixture_near(scene->camera_steps[k].position.x, 5.0f + begin + 0.25f * (float)k, 1e-5f);
+        fixture_near(scene->camera.position.x, 5.0f, 1e-6f);
+        assert_true(ty_world_is_moving(scene->world, 0));
+        assert_false(ty_world_is_moving(scene->world, 1));
+        ty_affine map = ty_world_to_world(scene->world, 0, 0, 0.5f);
+        fixture_near(map.t.y, 2.0f + 2.0f * (begin + 0.25f), 1e-5f);
+        int worlds = scene->rebuilds.worlds;
+        set_frame(9); // the object rests: built once more, then no more
+        assert_int_equal(scene->rebuilds.worlds, worlds + 1);
+        assert_false(ty_world_is_moving(scene->world, 0));
+        set_frame(10);
+        assert_int_equal(scene->rebuilds.worlds, worlds + 1);
+    }
+}
+
 static void time_outside_is_an_error_if_asked(void** state)
 {
     (void)state;
@@ -318,6 +400,10 @@ int main(void)
         FIXTURE_TEST(seeds_move_only_when_asked),
         FIXTURE_TEST(a_turn_closes),
         FIXTURE_TEST(mistakes_are_told_where_they_stand),
+        FIXTURE_TEST(lenses_are_checked),
+        FIXTURE_TEST(film_and_focal_length_give_the_angle),
+        FIXTURE_TEST(focus_follows_its_object),
+        FIXTURE_TEST(poses_span_the_shutter),
         FIXTURE_TEST(time_outside_is_an_error_if_asked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

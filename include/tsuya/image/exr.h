@@ -26,6 +26,7 @@ typedef enum ty_exr_attribute_type
     TY_EXR_MATRIX44,       // value[16], row-major as EXR's m44f
     TY_EXR_CHROMATICITIES, // value[8]: rx ry gx gy bx by wx wy
     TY_EXR_RATIONAL,       // integer[0] / integer[1]
+    TY_EXR_ENVMAP,         // integer[0]: 0 = latitude and longitude, 1 = cube
 } ty_exr_attribute_type;
 
 typedef struct ty_exr_attribute
@@ -72,6 +73,7 @@ void ty_exr_add_int(ty_exr* exr, const char* name, int value);
 void ty_exr_add_matrix(ty_exr* exr, const char* name, const float value[16]);
 void ty_exr_add_chromaticities(ty_exr* exr, const float value[8]);
 void ty_exr_add_rational(ty_exr* exr, const char* name, int numerator, unsigned denominator);
+void ty_exr_add_latlong(ty_exr* exr); // the standard attribute `envmap`: latitude and longitude
 
 const ty_exr_channel* ty_exr_find_channel(const ty_exr* exr, const char* name);     // NULL if absent
 const ty_exr_attribute* ty_exr_find_attribute(const ty_exr* exr, const char* name); // NULL if absent

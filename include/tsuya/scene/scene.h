@@ -25,16 +25,46 @@ typedef struct ty_film_def
     bool half;          // beauty channels as half (else float)
 } ty_film_def;
 
+typedef enum ty_projection
+{
+    TY_PROJECTION_PERSPECTIVE,
+    TY_PROJECTION_ORTHOGRAPHIC,
+    TY_PROJECTION_EQUIRECTANGULAR, // all directions: longitude across, latitude down; the middle is where it looks
+} ty_projection;
+
+// Which moment of the open shutter is the frame's own.
+typedef enum ty_shutter_position
+{
+    TY_SHUTTER_CENTER,
+    TY_SHUTTER_START,
+    TY_SHUTTER_END,
+} ty_shutter_position;
+
 typedef struct ty_camera_def
 {
+    int projection;                // ty_projection
     ty_vec3 position, look_at, up; // m
-    float vfov;                    // radians
+    float vfov;                    // radians; perspective
+    float ortho_height;            // m; orthographic: what the picture's height shows
+    float shift[2];                // of the film, in its widths and heights, to the right and up
     float f_stop;                  // 0 = pinhole; aperture diameter = focal length / f_stop
+    float aperture;                // m, diameter, instead of f_stop
     float film_height;             // m, gives the focal length: height / (2 tan(vfov / 2))
+    float film_width;              // m; as read: film_height is what it makes of it
+    float focal_length;            // m; as read: vfov is what it makes of it
     float focus_distance;          // m; 0 = the distance to focus_point or look_at
     ty_vec3 focus_point;           // used when has_focus_point
     bool has_focus_point;
-    float near_clip; // m
+    const char* focus_object; // name or NULL; focus_point is then the middle of its box
+    int blades;               // of the aperture; below 3 = round
+    float blade_rotation;     // radians, counter-clockwise in the picture
+    float blade_curvature;    // 0 = straight edges .. 1 = round
+    float squeeze;            // of an anamorphic lens: blurs are this much higher than wide; 0 = 1
+    float near_clip;          // m
+    float far_clip;           // m; 0 = none
+    float shutter;            // frames that it is open; 0 = nothing moves
+    int shutter_position;     // ty_shutter_position
+    int motion_steps;         // poses over the shutter, 2..33
 } ty_camera_def;
 
 typedef enum ty_integrator_kind
@@ -188,6 +218,9 @@ typedef struct ty_scene
     const char* path; // of the scene file
     ty_film_def film;
     ty_camera_def camera; // of this frame, turned by the turntable
+    ty_camera_def* camera_steps; // at even steps over the open shutter
+    int camera_step_count;       // 1 = at rest
+    bool moves;                  // camera or objects, while the shutter is open: rays have a time
     ty_render_def render;
     ty_timeline_def timeline;
     ty_turntable_def turntable;

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cameras and motion in whole pictures, against what geometry says: coverage along a path, sizes, brightness of blurs.
+#include "whole_program.h"
+
+#define HEAD                                                                                                           \
+    "tsuya: 1\n"                                                                                                       \
+    "film: { size: [%d, %d], filter: box, filter_width: 1, half: false }\n"                                            \
+    "render: { samples: %d, max_depth: 1, seed: 3%s }\n"
+
+// A plate of width .25 that goes from x = -.25 to .25 while the shutter is open, or a camera that goes the other way.
+#define PLATE                                                                                                          \
+    "assets: { plate: { shape: box, size: [0.125, 1, 0.005] } }\n"                                                     \
+    "materials: { m: { model: surface, emission_luminance: 1, base_color: 0, specular_weight: 0 } }\n"                 \
+    "objects: [ { mesh: plate, material: m, translate: %s } ]\n"                                                       \
+    "camera: { projection: orthographic, ortho_height: 0.125, position: %s, look_at: %s, shutter: %s }\n"              \
+    "lights: [ { type: point, center: [0, 9, 0] } ]\nframe: 1\n"
+
+static ty_exr* render_plate(const char* translate, const char* position, const char* look_at, const char* shutter)
+{
+    char text[4096];
+    snprintf(text, sizeof text, HEAD PLATE, 64, 8, 256, "", translate, position, look_at, shutter);
+    return render_text(text);
+}
+
+// Share of the time at which |x - c(t)| < width / 2, c from -way / 2 to way / 2.
+static double coverage(double x, double width, double way)
+{
+    double low = fmax((x - 0.5 * width) / way + 0.5, 0.0), high = fmin((x + 0.5 * width) / way + 0.5, 1.0);
+    return high > low ? high - low : 0.0;
+}
+
+static void check_coverage(const ty_exr* exr, double way)
+{
+    for (int x = 0; x < 64; ++x)
+    {
+        double mean = 0.0, expected = 0.0;
+        for (int y = 0; y < 8; ++y)
+            mean += (double)pixel(exr, "A", x, y) / 8.0;
+        for (int i = 0; i < 16; ++i)
+            expected += coverage((x + (i + 0.5) / 16.0 - 32.0) / 64.0, 0.25, way) / 16.0;
+        if (fabs(mean - expected) > 0.012)
+            fail_msg("column %d: alpha %g, expected %g", x, mean, expected);
+    }
+}
+
+static void alpha_lies_along_the_path(void** state)
+{
+    (void)state;
+    const char* still[] = {"[0, 0, 0]", "[0, 0, 1]"};
+    ty_exr* exr = render_plate("{ keys: { 0: [-0.5, 0, 0], 2: [0.5, 0, 0] } }", still[1], still[0], "1");
+    check_coverage(exr, 0.5);
+    ty_exr_destroy(exr);
+    exr = render_plate("{ keys: { 0: [-0.5, 0, 0], 2: [0.5, 0, 0] } }", still[1], still[0], "0.5");
+    check_coverage(exr, 0.25);
+    ty_exr_destroy(exr);
+    exr = render_plate("[0, 0, 0]", "{ keys: { 0: [-0.5, 0, 1], 2: [0.5, 0, 1] } }",
+                       "{ keys: { 0: [-0.5, 0, 0], 2: [0.5, 0, 0] } }", "1");
+    check_coverage(exr, 0.5);
+    ty_exr_destroy(exr);
+}
+
+// Both move together: nothing is blurred.
+static void what_goes_along_is_sharp(void** state)
+{
+    (void)state;
+    ty_exr* exr =
+        render_plate("{ keys: { 0: [-0.5, 0, 0], 2: [0.5, 0, 0] } }", "{ keys: { 0: [-0.5, 0, 1], 2: [0.5, 0, 1] } }",
+                     "{ keys: { 0: [-0.5, 0, 0], 2: [0.5, 0, 0] } }", "1");
+    for (int x = 0; x < 64; ++x)
+        if (x != 23 && x != 24 && x != 39 && x != 40)
+            assert_true(pixel(exr, "A", x, 4) == (x > 23 && x < 40 ? 1.0f : 0.0f));
+    assert_true(fabsf(pixel(exr, "Z", 32, 4) - 0.995f) < 1e-5f);
+    ty_exr_destroy(exr);
+}
+
+static void assert_same_picture(const ty_exr* a, const ty_exr* b)
+{
+    size_t size = (size_t)ty_exr_width(a) * (size_t)ty_exr_height(a) * sizeof(float);
+    assert_int_equal(a->channel_count, b->channel_count);
+    for (int i = 0; i < a->channel_count; ++i)
+        assert_memory_equal(a->channels[i].pixels, b->channels[i].pixels, size);
+}
+
+// An open shutter alone changes no bit, nor does a key that never moves.
+static void stillness_costs_no_bit(void** state)
+{
+    (void)state;
+    ty_exr* closed = render_plate("[0, 0, 0]", "[0, 0, 1]", "[0, 0, 0]", "0");
+    ty_exr* open = render_plate("[0, 0, 0]", "[0, 0, 1]", "[0, 0, 0]", "1");
+    ty_exr* keyed =
+        render_plate("{ keys: { 1: [0, 0, 0], 9: [0, 0, 0] } }", "{ keys: { 3: [0, 0, 1] } }", "[0, 0, 0]", "1");
+    assert_same_picture(closed, open);
+    assert_same_picture(closed, keyed);
+    ty_exr_destroy(closed);
+    ty_exr_destroy(open);
+    ty_exr_destroy(keyed);
+}
+
+// A plate turning by 90 degrees about its end sweeps a quarter of a disc: steps over the shutter follow the circle.
+static void turning_follows_the_circle(void** state)
+{
+    (void)state;
+    char text[4096];
+    snprintf(text, sizeof text,
+             HEAD "assets: { plate: { shape: box, size: [0.01, 0.2, 0.005] } }\n"
+                  "materials: { m: { model: surface } }\n"
+                  "objects: [ { mesh: plate, material: m, translate: [0.5, 0, 0] } ]\n"
+                  "turntable: { turn: objects, axis: [0, 0, 1], about: [0, 0, 0], angle: { keys: { 0: 0, 2: 360 } } }\n"
+                  "camera: { projection: orthographic, ortho_height: 1.6, shutter: 0.5, shutter_position: start }\n"
+                  "lights: [ { type: point, center: [0, 9, 0] } ]\nframe: 0\n",
+             64, 64, 64, "");
+    ty_exr* exr = render_text(text);
+    double area = 0.0;
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+        {
+            double px = (x + 0.5) / 40.0 - 0.8, py = 0.8 - (y + 0.5) / 40.0, r = sqrt(px * px + py * py);
+            float alpha = pixel(exr, "A", x, y);
+            area += (double)alpha / 1600.0;
+            // the plate's middle is at .5, its ends within .54: nothing beyond the ring, inside the quarter something
+            if (r > 0.575 || r < 0.45)
+                assert_true(alpha == 0.0f);
+            if (fabs(r - 0.5) < 0.02 && px > 0.22 && py > 0.22)
+                assert_true(alpha > 0.0f);
+        }
+    if (fabs(area / (0.02 * 0.4) - 1.0) > 0.02) // the plate's own area, whatever its way
+        fail_msg("area %g, expected %g", area, 0.02 * 0.4);
+    ty_exr_destroy(exr);
+}
+
+static double sum_of(const ty_exr* exr, const char* channel)
+{
+    double sum = 0.0;
+    for (int y = 0; y < ty_exr_height(exr); ++y)
+        for (int x = 0; x < ty_exr_width(exr); ++x)
+            sum += (double)pixel(exr, channel, x, y);
+    return sum;
+}
+
+static void an_orthographic_ball_has_its_size(void** state)
+{
+    (void)state;
+    char text[2048];
+    snprintf(text, sizeof text,
+             HEAD
+             "assets: { ball: { shape: sphere, radius: 0.3, divisions: 192 } }\nmaterials: { m: { model: surface } }\n"
+             "objects: [ { mesh: ball, material: m, translate: [0.2, 0.1, -5] } ]\n"
+             "camera: { projection: orthographic, ortho_height: 1 }\n"
+             "lights: [ { type: point, center: [0, 9, 0] } ]\n",
+             96, 64, 64, "");
+    ty_exr* exr = render_text(text);
+    double area = sum_of(exr, "A") / (64.0 * 64.0), expected = 3.14159265 * 0.09;
+    if (fabs(area / expected - 1.0) > 3e-3)
+        fail_msg("area %g, expected %g", area, expected);
+    ty_exr_destroy(exr);
+}
+
+// Light out of focus is spread, not lost: the same in sum for every shape of the aperture.
+static void blurs_keep_their_light(void** state)
+{
+    (void)state;
+    static const char* const lenses[] = {"f_stop: 0",
+                                         "f_stop: 1.4",
+                                         "f_stop: 1.4, blades: 5",
+                                         "f_stop: 1.4, blades: 6, blade_curvature: 0.5, blade_rotation: 20",
+                                         "aperture: 40, blades: 3",
+                                         "f_stop: 1.4, squeeze: 2"};
+    double sharp = 0.0, peak = 0.0;
+    for (int i = 0; i < 6; ++i)
+    {
+        char text[2048];
+        snprintf(text, sizeof text,
+                 HEAD "assets: { ball: { shape: sphere, radius: 0.06, divisions: 48 } }\n"
+                      "materials: { m: { model: surface, emission_luminance: 100 } }\n"
+                      "objects: [ { mesh: ball, material: m } ]\n"
+                      "camera: { position: [0, 0, 2], vfov: 20, focus_distance: 0.3, film_height: 24, %s }\n",
+                 48, 48, 256, "", lenses[i]);
+        ty_exr* exr = render_text(text);
+        double sum = sum_of(exr, "R");
+        if (i == 0)
+        {
+            sharp = sum;
+            peak = (double)pixel(exr, "R", 24, 24);
+        }
+        else if (!((double)pixel(exr, "R", 24, 24) < 0.8 * peak))
+            fail_msg("%s: %g, sharp %g", lenses[i], (double)pixel(exr, "R", 24, 24), peak);
+
+        if (fabs(sum / sharp - 1.0) > 0.02)
+            fail_msg("%s: %g, sharp %g", lenses[i], sum, sharp);
+        ty_exr_destroy(exr);
+    }
+}
+
+// A picture of all directions is an environment: taken of one, it is that one again.
+static void all_directions_are_an_environment(void** state)
+{
+    (void)state;
+    ty_error error = {0};
+    ty_exr* sky = ty_exr_create((int[4]){0, 0, 63, 31}, (int[4]){0, 0, 63, 31});
+    for (int c = 0; c < 3; ++c)
+    {
+        float* plane = ty_exr_add_channel(sky, (const char*[]){"R", "G", "B"}[c], TY_EXR_FLOAT);
+        for (int i = 0; i < 64 * 32; ++i)
+        {
+            float s, co;
+            ty_sincos(2.0f * TY_PI * ((float)(i % 64) + 0.5f) / 64.0f, &s, &co);
+            plane[i] = 1.0f + 0.5f * s + 0.25f * co + 0.01f * (float)(i / 64);
+        }
+    }
+    assert_int_equal(ty_exr_write("all_round.exr", sky, &error), TY_OK);
+    char text[2048];
+    snprintf(text, sizeof text,
+             HEAD "camera: { projection: equirectangular, look_at: [0, 0, -1], position: [0, 0, 0] }\n"
+                  "lights: [ { type: environment, image: all_round.exr, color_space: raw } ]\n",
+             64, 32, 64, "");
+    ty_exr* exr = render_text(text);
+    assert_int_equal(ty_exr_find_attribute(exr, "envmap")->type, TY_EXR_ENVMAP);
+    assert_null(ty_exr_find_attribute(exr, "worldToNDC"));
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 64; ++x)
+        {
+            float expected = pixel(sky, "R", x, y), value = pixel(exr, "R", x, y);
+            if (fabsf(value - expected) > 0.01f)
+                fail_msg("pixel %d, %d: %g, expected %g", x, y, (double)value, (double)expected);
+        }
+    ty_exr_destroy(exr);
+    ty_exr_destroy(sky);
+    remove("all_round.exr");
+}
+
+static void pictures_tell_their_time(void** state)
+{
+    (void)state;
+    char text[2048];
+    snprintf(text, sizeof text, HEAD "timeline: { fps: 23.976 }\nframe: 7\nlights: [ { type: environment } ]\n", 4, 4,
+             4, "");
+    ty_exr* exr = render_text(text);
+    const ty_exr_attribute* rate = ty_exr_find_attribute(exr, "framesPerSecond");
+    assert_int_equal(rate->integer[0], 24000);
+    assert_int_equal(rate->integer[1], 1001);
+    assert_true(ty_exr_find_attribute(exr, "tsuya/frame")->value[0] == 7.0f);
+    ty_exr_destroy(exr);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(alpha_lies_along_the_path),
+        cmocka_unit_test(what_goes_along_is_sharp),
+        cmocka_unit_test(stillness_costs_no_bit),
+        cmocka_unit_test(turning_follows_the_circle),
+        cmocka_unit_test(an_orthographic_ball_has_its_size),
+        cmocka_unit_test(blurs_keep_their_light),
+        cmocka_unit_test(all_directions_are_an_environment),
+        cmocka_unit_test(pictures_tell_their_time),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
