@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Integrators for looking at things: what the camera sees first, as colour.
-#include "integrator.h"
+#include "cone.h"
 
 void ty_integrator_record(const ty_integrator* in, const ty_bsdf* bsdf, ty_film_sample* out)
 {
@@ -12,8 +12,7 @@ void ty_integrator_record(const ty_integrator* in, const ty_bsdf* bsdf, ty_film_
     out->instance = in->first_instance[point->object] + point->instance;
 }
 
-// Mean curvature of the mesh, 1/m in the world; 0 where the mesh has none.
-static float mean_curvature(const ty_world* world, const ty_surface_point* point)
+float ty_integrator_curvature(const ty_world* world, const ty_surface_point* point)
 {
     const ty_mesh* mesh = ty_world_mesh(world, point->object, point->instance);
     if (!mesh->curvature_1 || !mesh->curvature_2)
@@ -53,7 +52,7 @@ static ty_rgb shown(const ty_integrator* in, const ty_sampler* sampler, const ty
     case TY_INTEGRATOR_NORMAL:
         return (ty_rgb){0.5f + 0.5f * n.x, 0.5f + 0.5f * n.y, 0.5f + 0.5f * n.z};
     case TY_INTEGRATOR_CURVATURE:
-        return ty_rgb_grey(0.5f + mean_curvature(scene->world, &bsdf->point) * scene->render.curvature_scale);
+        return ty_rgb_grey(0.5f + ty_integrator_curvature(scene->world, &bsdf->point) * scene->render.curvature_scale);
     case TY_INTEGRATOR_AO:
         return ty_rgb_grey(ambient_occlusion(in, sampler, bsdf, counters));
     case TY_INTEGRATOR_PATH:
@@ -71,7 +70,9 @@ void ty_debug_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray 
         return;
     ty_surface_point point;
     ty_bsdf bsdf;
+    ty_cone cone = ty_cone_begin(in, &ray);
     ty_world_surface(scene->world, &hit, &point);
+    ty_cone_arrive(&cone, ray.direction, hit.t, &point);
     ty_material_prepare(ty_scene_material(scene, hit.object, hit.instance, hit.triangle), &scene->shading, &point,
                         ty_neg(ray.direction), &bsdf);
     counters->path_vertices++;

@@ -31,6 +31,9 @@ typedef struct ty_counters
 // Surface seen by the camera, for the film's other channels.
 void ty_integrator_record(const ty_integrator* in, const ty_bsdf* bsdf, ty_film_sample* out);
 
+// Mean curvature of the mesh, 1/m in the world; 0 where the mesh has none.
+float ty_integrator_curvature(const ty_world* world, const ty_surface_point* point);
+
 // out is zeroed; the ray is the camera's.
 void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray ray, ty_counters* counters,
                     ty_film_sample* out);

@@ -23,6 +23,7 @@ static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sa
     if (!survives(&in->scene->render, p, &u))
         return false;
     ty_bsdf_spawn(bsdf, sample->wi, u, &p->ray);
+    ty_cone_scatter(in, bsdf, sample, &p->cone);
     p->ray.mask = sample->transmitted ? TY_MASK_TRANSMISSION : sample->delta ? TY_MASK_GLOSSY : TY_MASK_DIFFUSE;
     p->view = (ty_light_view){
         .from = ty_path_light_point(in, bsdf), .pdf = sample->pdf, .full = sample->delta, .seen = p->ray.mask};
@@ -120,6 +121,7 @@ void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray r
 {
     const ty_scene* scene = in->scene;
     ty_path p = {.ray = ray, .beta = {1.0f, 1.0f, 1.0f}, .view = {.full = true, .seen = TY_MASK_CAMERA}};
+    p.cone = ty_cone_begin(in, &ray);
     for (;; p.bounce++)
     {
         ty_hit hit;
@@ -133,6 +135,7 @@ void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray r
         ty_surface_point point;
         ty_bsdf bsdf;
         ty_world_surface(scene->world, &hit, &point);
+        ty_cone_arrive(&p.cone, p.ray.direction, hit.t, &point);
         ty_material_prepare(ty_scene_material(scene, hit.object, hit.instance, hit.triangle), &scene->shading, &point,
                             ty_neg(p.ray.direction), &bsdf);
         counters->path_vertices++;

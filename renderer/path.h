@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What one path carries from vertex to vertex, and the light that is gathered at a vertex.
 #pragma once
-#include "integrator.h"
+#include "cone.h"
 
 typedef struct ty_path
 {
     ty_ray ray;
     ty_rgb beta; // throughput
     ty_light_view view;
+    ty_cone cone;
     int bounce; // surfaces passed before the present one
 } ty_path;
 

@@ -15,6 +15,7 @@ ty_render_def ty_render_def_default(void)
                            .samples = 64,
                            .max_depth = 16,
                            .roulette_depth = 5,
+                           .texture_filter = true,
                            .ao_distance = 0.05f,
                            .curvature_scale = 0.001f};
 }
@@ -78,6 +79,8 @@ static const ty_param render_rows[] = {
      false},
     {"light_sampling", TY_PARAM_ENUM, "", 0, 0, samplings, NULL, offsetof(ty_render_def, light_sampling),
      "how light is found: by lights and surfaces together, or one alone, for comparison", false},
+    {"texture_filter", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_render_def, texture_filter),
+     "average textures over what a ray stands for; false = look them up at the point", false},
     {"ao_distance", TY_PARAM_FLOAT, "m", 0, MANY, NULL, NULL, offsetof(ty_render_def, ao_distance),
      "reach of ambient occlusion", false},
     {"curvature_scale", TY_PARAM_FLOAT, "m", 0, MANY, NULL, NULL, offsetof(ty_render_def, curvature_scale),

@@ -92,6 +92,7 @@ typedef struct ty_render_def
     ty_seed seed;          // of this frame, with animate_seed
     bool animate_seed;     // other noise in every frame
     int light_sampling;    // ty_light_sampling
+    bool texture_filter;   // textures are averaged over what a ray stands for
     float ao_distance;     // m
     float curvature_scale; // m: curvature * scale is shown as grey around .5
 } ty_render_def;

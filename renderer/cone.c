@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cones along a path (T. Akenine-Moeller et al. 2021, "Improved shader and texture level of detail using ray cones",
+// sec. 3), widened where a lobe scatters by the solid angle that one sample stands for.
+#include "cone.h"
+
+#define WIDEST 1.0f // radians
+
+// Samples share a pixel, and a lobe: each stands for its part. Never less than an eighth of the whole, as the pixel
+// filter blurs anyway.
+static float share(const ty_scene* scene)
+{
+    return ty_max(0.125f, 1.0f / sqrtf((float)scene->render.samples));
+}
+
+ty_cone ty_cone_begin(const ty_integrator* in, const ty_ray* ray)
+{
+    const ty_scene* scene = in->scene;
+    const ty_camera* camera = &in->camera;
+    ty_cone cone = {.active = scene->surface_texture_count > 0 && scene->render.texture_filter};
+    if (!cone.active)
+        return cone;
+    // The solid angle of a pixel falls with the third power of the cosine to the axis.
+    float cosine = ty_max(ty_dot(ray->direction, camera->forward), 0.0f);
+    cone.spread = 2.0f * camera->half_height * camera->inverse_size[1] * cosine * sqrtf(cosine) * share(scene);
+    return cone;
+}
+
+void ty_cone_arrive(ty_cone* cone, ty_vec3 direction, float distance, ty_surface_point* point)
+{
+    if (!cone->active)
+        return;
+    cone->width = fabsf(cone->width + cone->spread * distance);
+    ty_surface_set_footprint(point, direction, cone->width);
+}
+
+void ty_cone_scatter(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, ty_cone* cone)
+{
+    if (!cone->active)
+        return;
+    float extra = sample->delta ? 0.0f : ty_min(share(in->scene) / sqrtf(ty_max(sample->pdf, 1e-6f)), WIDEST);
+    if (extra < 0.1f) // else what the surface's curvature adds is lost in it
+    {
+        // The normal turns by this angle across the width.
+        float turn = ty_integrator_curvature(in->scene->world, &bsdf->point) * cone->width;
+        turn = bsdf->entering ? turn : -turn;
+        float eta = bsdf->eta > 0.0f ? bsdf->eta : 1.0f;
+        cone->spread = sample->transmitted ? (cone->spread + turn) / eta - turn : cone->spread + 2.0f * turn;
+    }
+    if (extra > 0.0f)
+        cone->spread = sqrtf(cone->spread * cone->spread + extra * extra);
+    cone->spread = ty_clamp(cone->spread, -WIDEST, WIDEST);
+}
