@@ -12,17 +12,31 @@ static float share(const ty_scene* scene)
     return ty_max(0.125f, 1.0f / sqrtf((float)scene->render.samples));
 }
 
+// How wide a pixel is where the ray begins, and how fast it grows: its solid angle as a circle's.
+static ty_cone pixel_cone(const ty_camera* camera, ty_vec3 direction)
+{
+    float height = camera->inverse_size[1], cosine = 0.0f;
+    switch (camera->projection)
+    {
+    case TY_PROJECTION_PERSPECTIVE: // falls with the third power of the cosine to the axis
+        cosine = ty_max(ty_dot(direction, camera->forward), 0.0f);
+        return (ty_cone){.spread = 2.0f * camera->half_height * height * cosine * sqrtf(cosine)};
+    case TY_PROJECTION_ORTHOGRAPHIC:
+        return (ty_cone){.width = 2.0f * camera->half_height * height};
+    case TY_PROJECTION_EQUIRECTANGULAR: // pixels grow narrow towards the poles
+        cosine = ty_safe_sqrt(1.0f - ty_sqr(ty_dot(direction, camera->up)));
+        return (ty_cone){.spread = TY_PI * sqrtf(2.0f * camera->inverse_size[0] * height * cosine)};
+    }
+    return (ty_cone){0};
+}
+
 ty_cone ty_cone_begin(const ty_integrator* in, const ty_ray* ray)
 {
     const ty_scene* scene = in->scene;
-    const ty_camera* camera = &in->camera;
-    ty_cone cone = {.active = scene->surface_texture_count > 0 && scene->render.texture_filter};
-    if (!cone.active)
-        return cone;
-    // The solid angle of a pixel falls with the third power of the cosine to the axis.
-    float cosine = ty_max(ty_dot(ray->direction, camera->forward), 0.0f);
-    cone.spread = 2.0f * camera->half_height * camera->inverse_size[1] * cosine * sqrtf(cosine) * share(scene);
-    return cone;
+    if (scene->surface_texture_count == 0 || !scene->render.texture_filter)
+        return (ty_cone){0};
+    ty_cone pixel = pixel_cone(&in->camera, ray->direction);
+    return (ty_cone){pixel.width * share(scene), pixel.spread * share(scene), true};
 }
 
 void ty_cone_arrive(ty_cone* cone, ty_vec3 direction, float distance, ty_surface_point* point)

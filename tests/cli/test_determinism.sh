@@ -65,3 +65,38 @@ expect 0 "$tsuya" info o2.exr --json
 prints "--set materials.grey.base_color=0.2"
 expect 0 "$tsuya" info t1.exr --json
 prints '"tsuya/samples": "0-63"'
+
+# Textures: neither threads nor what fits in memory nor who converted them changes a bit.
+expect 0 "$tsuya" develop t1.exr -o fill.0001.png
+expect 0 "$tsuya" develop o1.exr -o fill.0002.png
+cat >textured.yaml <<'Y'
+tsuya: 1
+film: { size: [61, 37] }
+render: { samples: 16 }
+timeline: { start: 1, end: 4 }
+camera: { position: [0, 0.05, 0.12], look_at: [0, 0, 0], vfov: 40 }
+assets:
+  ball: { shape: sphere, radius: 0.01, divisions: 32 }
+  floor: { shape: plane, size: [0.1, 0, 0.1] }
+  fill: { frames: fill.####.png, fps: 12, loop: true, interpolate: linear }
+materials:
+  skin: { model: cdrf, color: { texture: fill }, mean_free_path: 1.5 }
+  grey: { model: surface, base_color: { texture: fill, mapping: triplanar, size: 0.03 }, specular_roughness: { texture: fill, channel: luminance } }
+objects:
+  - { mesh: ball, material: skin, translate: [-0.012, 0.01, 0] }
+  - { mesh: floor, material: grey }
+lights:
+  - { type: environment, radiance: 0.3 }
+Y
+expect 0 "$tsuya" render textured.yaml --set frame=2 -o x1.exr --threads 1 --cache first --progress none
+expect 0 "$tsuya" render textured.yaml --set frame=2 -o x2.exr --threads 3 --cache first --progress none --texture-cache 16MB
+expect 0 "$tsuya" render textured.yaml --set frame=2 -o x3.exr --threads 2 --cache second --progress none --samples 0-15
+same x1.exr x2.exr
+same x1.exr x3.exr
+expect 0 "$tsuya" render textured.yaml --set frame=4 -o x4.exr --cache /proc/nowhere --progress none
+says "cannot be kept"
+expect 0 "$tsuya" render textured.yaml --set frame=4 -o x5.exr --cache first --progress none
+same x4.exr x5.exr
+expect 2 "$tsuya" render textured.yaml -o bad.exr --texture-cache 1XB
+says "512MB"
+expect 2 "$tsuya" render textured.yaml -o bad.exr --texture-cache 1kB
