@@ -15,6 +15,8 @@ ty_shape_def ty_shape_def_default(void)
         .foot_height = 0.007f,
         .curve = 2.8f,
         .rounding = 0.0f,
+        .relief = 0.15f,
+        .variant = 1,
         .divisions = 64,
     };
 }
@@ -25,7 +27,7 @@ static void set_default(void* def)
 }
 
 static const char* const kinds[] = {"sphere", "ellipsoid", "box",  "cylinder", "torus", "plane",
-                                    "disc",   "bowl",      "dome", "sweep",    NULL};
+                                    "disc",   "bowl",      "dome", "sweep",    "stone", NULL};
 
 #define LENGTH(field, help)                                                                                            \
     {                                                                                                                  \
@@ -36,7 +38,7 @@ static const ty_param rows[] = {
     {"shape", TY_PARAM_ENUM, "", 0, 0, kinds, NULL, offsetof(ty_shape_def, kind), "which shape", true},
     LENGTH(radius, "sphere, cylinder, disc, dome; torus: to the tube's centre; bowl: outside of the rim"),
     {"size", TY_PARAM_FLOAT3, "m", 0, 1e4, NULL, NULL, offsetof(ty_shape_def, size),
-     "ellipsoid: semi-axes; box, plane: half extents; sweep: half width, wall height, half depth", false},
+     "ellipsoid, stone: semi-axes; box, plane: half extents; sweep: half width, wall height, half depth", false},
     LENGTH(height, "cylinder, bowl, dome"),
     LENGTH(tube, "torus: radius of the tube"),
     LENGTH(thickness, "bowl: of the wall"),
@@ -45,6 +47,9 @@ static const ty_param rows[] = {
     {"curve", TY_PARAM_FLOAT, "", 1, 12, NULL, NULL, offsetof(ty_shape_def, curve),
      "bowl profile: 1 = cone, 2 = parabola, higher = fuller", false},
     LENGTH(rounding, "box, cylinder: radius of the edges; sweep: of the bend"),
+    {"relief", TY_PARAM_FLOAT, "", 0, 0.5, NULL, NULL, offsetof(ty_shape_def, relief),
+     "stone: faces and bumps against its size; 0 = an ellipsoid", false},
+    {"variant", TY_PARAM_INT, "", 0, 1000000, NULL, NULL, offsetof(ty_shape_def, variant), "stone: which one", false},
     {"divisions", TY_PARAM_INT, "", 8, 4096, NULL, NULL, offsetof(ty_shape_def, divisions),
      "segments around; the other direction follows the shape", false},
 };
@@ -117,6 +122,7 @@ static ty_status check_extents(const ty_shape_def* def, ty_error* error)
     switch ((ty_shape_kind)def->kind)
     {
     case TY_SHAPE_ELLIPSOID:
+    case TY_SHAPE_STONE:
         return check_size(def, true, true, true, error);
     case TY_SHAPE_BOX:
         status = check_size(def, true, true, true, error);
@@ -145,12 +151,12 @@ static ty_status check_extents(const ty_shape_def* def, ty_error* error)
 
 static ty_status check_def(const ty_shape_def* def, ty_error* error)
 {
-    if (def->kind < 0 || def->kind > TY_SHAPE_SWEEP)
+    if (def->kind < 0 || def->kind > TY_SHAPE_STONE)
         return ty_error_set(error, TY_BAD_INPUT, "shape: %d: no such shape", def->kind);
     if (def->divisions < 8 || def->divisions > 4096)
         return ty_error_set(error, TY_BAD_INPUT, "divisions: %d: must be within 8 .. 4096", def->divisions);
     bool has_radius = def->kind != TY_SHAPE_ELLIPSOID && def->kind != TY_SHAPE_BOX && def->kind != TY_SHAPE_PLANE &&
-                      def->kind != TY_SHAPE_SWEEP;
+                      def->kind != TY_SHAPE_SWEEP && def->kind != TY_SHAPE_STONE;
     ty_status status = has_radius ? check_length("radius", def->radius, error) : TY_OK;
     return status == TY_OK ? check_extents(def, error) : status;
 }
@@ -169,6 +175,7 @@ static void build_kind(ty_shape_build* build, const ty_shape_def* def)
     {
     case TY_SHAPE_SPHERE:
     case TY_SHAPE_ELLIPSOID:
+    case TY_SHAPE_STONE:
         ty_shape_build_ball(build, def->divisions);
         break;
     case TY_SHAPE_BOX:
@@ -209,5 +216,7 @@ ty_status ty_shape_create(const ty_shape_def* def, ty_mesh** out, ty_error* erro
     status = ty_shape_finish(&build, out, error);
     if (status == TY_OK && (def->kind == TY_SHAPE_SPHERE || def->kind == TY_SHAPE_ELLIPSOID))
         stretch_ball(def, *out);
+    if (status == TY_OK && def->kind == TY_SHAPE_STONE)
+        ty_shape_bend_stone(def, *out);
     return status;
 }

@@ -75,6 +75,7 @@ float ty_shape_interior_distance(const ty_shape_def* def, ty_vec3 p)
         return ty_max(ellipsoid_distance(p, (ty_vec3){def->radius, def->height, def->radius}), -p.y);
     case TY_SHAPE_PLANE:
     case TY_SHAPE_DISC:
+    case TY_SHAPE_STONE:
     case TY_SHAPE_SWEEP:
         break;
     }

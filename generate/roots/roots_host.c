@@ -3,7 +3,8 @@
 #include "roots.h"
 #include <tsuya/geometry/mesh_file.h>
 
-static const ty_shape_kind shapes[] = {TY_SHAPE_SPHERE, TY_SHAPE_ELLIPSOID, TY_SHAPE_BOX, TY_SHAPE_CYLINDER};
+static const ty_shape_kind shapes[] = {TY_SHAPE_SPHERE, TY_SHAPE_ELLIPSOID, TY_SHAPE_BOX, TY_SHAPE_CYLINDER,
+                                       TY_SHAPE_STONE};
 
 static ty_status mesh_make(const ty_roots_host_def* def, ty_mesh** out, ty_error* error)
 {

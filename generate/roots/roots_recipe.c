@@ -44,7 +44,7 @@ ty_roots_recipe ty_roots_recipe_default(void)
 
 // --- host ---
 
-static const char* const host_kinds[] = {"sphere", "ellipsoid", "box", "cylinder", "mesh", NULL};
+static const char* const host_kinds[] = {"sphere", "ellipsoid", "box", "cylinder", "stone", "mesh", NULL};
 
 static void set_host_table(void* def)
 {
@@ -56,9 +56,12 @@ static const ty_param host_rows[] = {
     {"shape", TY_PARAM_ENUM, "", 0, 0, host_kinds, NULL, offsetof(OWNER, kind), "what roots grow on", false},
     FIELD("mesh", TY_PARAM_PATH, "", 0, 0, mesh, "a mesh, with shape mesh; it may be open"),
     FIELD("radius", TY_PARAM_FLOAT, "m", 0, 1e4, shape.radius, "of sphere and cylinder"),
-    FIELD("size", TY_PARAM_FLOAT3, "m", 0, 1e4, shape.size, "semi-axes of the ellipsoid, half extents of the box"),
+    FIELD("size", TY_PARAM_FLOAT3, "m", 0, 1e4, shape.size,
+          "semi-axes of ellipsoid and stone, half extents of the box"),
     FIELD("height", TY_PARAM_FLOAT, "m", 0, 1e4, shape.height, "of the cylinder"),
     FIELD("rounding", TY_PARAM_FLOAT, "m", 0, 1e4, shape.rounding, "edges of box and cylinder"),
+    FIELD("relief", TY_PARAM_FLOAT, "", 0, 0.5, shape.relief, "of the stone"),
+    FIELD("variant", TY_PARAM_INT, "", 0, 1000000, shape.variant, "which stone"),
     FIELD("divisions", TY_PARAM_INT, "", 8, 4096, shape.divisions, "segments around; roots feel facets"),
     FIELD("floor", TY_PARAM_BOOL, "", 0, 0, floor, "it stands on a plane at its lowest point; roots go on over it"),
 };

@@ -245,6 +245,33 @@ static void test_curvature_is_exact_where_there_is_a_formula(void** state)
     }
 }
 
+static void test_stones_are_closed_and_unlike(void** state)
+{
+    (void)state;
+    ty_shape_def def = shape_of(TY_SHAPE_STONE);
+    def.relief = 0.3f;
+    def.divisions = 96;
+    ty_mesh *stone = make(&def), *again = make(&def);
+    ty_mesh_topology topology;
+    ty_mesh_analyse(stone, &topology);
+    assert_true(topology.closed && topology.components == 1 && !topology.convex);
+    assert_memory_equal(stone->positions, again->positions, stone->vertex_count * sizeof(ty_vec3));
+    def.variant++;
+    ty_mesh* other = make(&def);
+    assert_memory_not_equal(stone->positions, other->positions, stone->vertex_count * sizeof(ty_vec3));
+    def.relief = 0.0f; // without relief: the ellipsoid
+    ty_mesh* plain = make(&def);
+    for (uint32_t v = 0; v < plain->vertex_count; v++)
+    {
+        ty_vec3 p = plain->positions[v], s = def.size;
+        assert_float_equal(ty_length(ty_vec3_make(p.x / s.x, p.y / s.y, p.z / s.z)), 1.0f, 1e-5f);
+    }
+    ty_mesh_destroy(stone);
+    ty_mesh_destroy(again);
+    ty_mesh_destroy(other);
+    ty_mesh_destroy(plain);
+}
+
 // The bowl's own formula against the estimate from its normals, where the wall is smooth on both sides.
 static void test_bowl_curvature_agrees_with_the_estimate(void** state)
 {
@@ -570,7 +597,7 @@ static void test_impossible_sizes_name_the_field(void** state)
         def.field = (value);                                                                                           \
         assert_refused(def, name);                                                                                     \
     } while (0)
-    REFUSED(TY_SHAPE_SPHERE, kind, 10, "shape");
+    REFUSED(TY_SHAPE_SPHERE, kind, TY_SHAPE_STONE + 1, "shape");
     REFUSED(TY_SHAPE_SPHERE, kind, -1, "shape");
     REFUSED(TY_SHAPE_SPHERE, divisions, 7, "divisions");
     REFUSED(TY_SHAPE_SPHERE, divisions, 4097, "divisions");
@@ -687,7 +714,7 @@ static void test_parameters_match_the_struct(void** state)
         int choices = 0;
         while (p->choices[choices])
             choices++;
-        assert_int_equal(choices, TY_SHAPE_SWEEP + 1);
+        assert_int_equal(choices, TY_SHAPE_STONE + 1);
         assert_string_equal(p->choices[TY_SHAPE_BOWL], "bowl");
         assert_string_equal(p->choices[TY_SHAPE_SWEEP], "sweep");
         assert_string_equal(p->choices[TY_SHAPE_TORUS], "torus");
@@ -709,6 +736,7 @@ int main(void)
         cmocka_unit_test(test_all_divisions_close),
         cmocka_unit_test(test_area_and_volume_converge_to_the_formula),
         cmocka_unit_test(test_curvature_is_exact_where_there_is_a_formula),
+        cmocka_unit_test(test_stones_are_closed_and_unlike),
         cmocka_unit_test(test_bowl_curvature_agrees_with_the_estimate),
         cmocka_unit_test(test_flat_parts_are_flat),
         cmocka_unit_test(test_borders_of_round_parts),

@@ -16,6 +16,7 @@ typedef enum ty_shape_kind
     TY_SHAPE_BOWL,      // radius (rim, outside), height, thickness, foot radius, foot height, curve: a turned solid
     TY_SHAPE_DOME,      // radius, height: closed half ellipsoid standing on y = 0
     TY_SHAPE_SWEEP,     // size: a floor that curves up into a wall behind (photographer's sweep); open
+    TY_SHAPE_STONE,     // size = semi-axes, relief, variant: a weathered stone
 } ty_shape_kind;
 
 typedef struct ty_shape_def
@@ -30,20 +31,23 @@ typedef struct ty_shape_def
     float foot_height; // m
     float curve;       // bowl profile: 1 = cone, 2 = parabola, higher = fuller
     float rounding;    // m
+    float relief;      // of a stone, against its size, 0..0.5
+    int variant;       // which stone
     int divisions;     // around; the other direction follows the shape, 8..4096
 } ty_shape_def;
 
 ty_shape_def ty_shape_def_default(void);
 const ty_param_table* ty_shape_params(void);
 
-// Welds, normals, uv, bounds and curvature (by the shape's formula) are filled in. Where curvature jumps, the border
-// has that of the flatter side. divisions is the number of segments around the equator, rounded up to a multiple of 8
-// for spheres, ellipsoids and round boxes: a sphere has 0.75 divisions^2 triangles. Impossible sizes are TY_BAD_INPUT
-// naming the field.
+// Welds, normals, uv, bounds and curvature (by the shape's formula; of a stone as measured) are filled in. Where
+// curvature jumps, the border has that of the flatter side. divisions is the number of segments around the equator,
+// rounded up to a multiple of 8 for spheres, ellipsoids and round boxes: a sphere has 0.75 divisions^2 triangles.
+// Impossible sizes are TY_BAD_INPUT naming the field.
 TY_CHECKED ty_status ty_shape_create(const ty_shape_def* def, ty_mesh** out, ty_error* error);
 
 // Signed distance (negative inside) to the *interior* of a vessel: the space to be filled. For BOWL the hollow below
-// the rim; for the closed solids the solid itself; open shapes have none: TY_FLOAT_MAX. Exact or a lower bound of the
-// distance inside, 1-Lipschitz. A bowl has no wall above its rim: there the distance is to the lip, negative within the
-// rim's radius and positive beyond, and jumps between. def must be one that ty_shape_create accepts. Any thread.
+// the rim; for the closed solids the solid itself; open shapes and stones have none: TY_FLOAT_MAX. Exact or a lower
+// bound of the distance inside, 1-Lipschitz. A bowl has no wall above its rim: there the distance is to the lip,
+// negative within the rim's radius and positive beyond, and jumps between. def must be one that ty_shape_create
+// accepts. Any thread.
 float ty_shape_interior_distance(const ty_shape_def* def, ty_vec3 p);
