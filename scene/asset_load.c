@@ -80,7 +80,11 @@ static void load_mesh(ty_loader* loader, ty_asset* asset)
     ty_error error;
     if (asset->mesh)
         return;
-    if (ty_mesh_read(asset->path, &asset->mesh, &error) == TY_OK)
+    ty_status status =
+        asset->gltf ? ty_gltf_scene_read_meshes(asset->gltf, &error) : ty_mesh_read(asset->path, &asset->mesh, &error);
+    if (status == TY_OK && asset->gltf)
+        status = ty_gltf_scene_merge(asset->gltf, &asset->mesh, &error);
+    if (status == TY_OK)
         keep_mesh(loader, asset->mesh);
     else
         ty_report_error(loader->errors, asset->place, "mesh", &error);
@@ -133,6 +137,19 @@ static bool is_wanted(const ty_loader* loader, const ty_asset* asset)
     return asset->used || loader->options->check_only;
 }
 
+static void load_gltf(ty_loader* loader, ty_asset* asset)
+{
+    ty_error error;
+    if (ty_gltf_scene_read_meshes(asset->gltf, &error) != TY_OK)
+    {
+        ty_report_error(loader->errors, asset->place, "gltf", &error);
+        return;
+    }
+    for (int i = 0; i < asset->gltf->mesh_count; ++i)
+        if (asset->gltf->meshes[i])
+            complete_mesh(loader, asset->gltf->meshes[i]);
+}
+
 static void load_meshes(ty_loader* loader)
 {
     for (int i = 0; i < loader->asset_count; ++i)
@@ -140,6 +157,8 @@ static void load_meshes(ty_loader* loader)
         ty_asset* asset = &loader->assets[i];
         if (is_wanted(loader, asset) && asset->kind == TY_ASSET_MESH)
             load_mesh(loader, asset);
+        else if (is_wanted(loader, asset) && asset->kind == TY_ASSET_GLTF)
+            load_gltf(loader, asset);
         else if (is_wanted(loader, asset) && asset->kind == TY_ASSET_SHAPE)
             load_shape(loader, asset);
     }

@@ -50,12 +50,23 @@ static bool material_emits(const ty_loader* loader, int material)
     return m && ty_material_is_emissive(m);
 }
 
+// Of what a glTF scene brings, any may.
+static bool file_emits(const ty_loader* loader, const ty_asset* asset)
+{
+    for (int i = 0; i <= asset->gltf->material_count; ++i)
+        if (material_emits(loader, asset->first_material + i))
+            return true;
+    return false;
+}
+
 static bool object_emits(const ty_loader* loader, const ty_object_entry* entry)
 {
-    bool emits = material_emits(loader, entry->material);
+    const ty_asset* asset = entry->asset >= 0 ? &loader->assets[entry->asset] : NULL;
+    bool has_own = asset && asset->kind == TY_ASSET_GLTF && !entry->def.material;
+    bool emits = has_own ? file_emits(loader, asset) : material_emits(loader, entry->material);
     for (int i = 0; entry->slots && i < entry->slots->count && !emits; ++i)
         if (entry->slots->items[i]->kind == TY_NODE_SCALAR)
-            emits = material_emits(loader, ty_node_find(loader->material_map, entry->slots->items[i]->text));
+            emits = material_emits(loader, ty_material_find(loader, entry->slots->items[i]->text));
     return emits;
 }
 
@@ -66,7 +77,7 @@ static const char* emitter_name(const ty_loader* loader, int index, bool group)
     if (index < scene->light_count)
         return group ? scene->light_groups[scene->lights[index].group_index] : scene->lights[index].name;
     int object = index - scene->light_count;
-    if (!object_emits(loader, &loader->objects[object]))
+    if (!object_emits(loader, &loader->objects[loader->placed[object].entry]))
         return NULL;
     return group ? scene->light_groups[scene->objects[object].light_group] : scene->objects[object].name;
 }
@@ -132,7 +143,7 @@ void ty_read_links(ty_loader* loader)
     size_t count = (size_t)scene->light_count + (size_t)scene->object_count;
     scene->light_links = TY_ARENA_ALLOC(loader->arena, const bool*, scene->object_count + 1);
     scene->light_link_count = 1;
-    for (int i = 0; list && i < list->count && i < scene->object_count; ++i)
+    for (int i = 0; list && i < loader->entry_count; ++i)
     {
         const ty_node *only = ty_node_get(list->items[i], "lights"),
                       *without = ty_node_get(list->items[i], "exclude_lights");
@@ -146,6 +157,8 @@ void ty_read_links(ty_loader* loader)
         bool* marks = TY_ARENA_ALLOC(loader->arena, bool, count);
         memset(marks, without != NULL, count);
         mark_all(loader, only ? only : without, only != NULL, marks);
-        scene->objects[i].light_link = link_index(scene, marks, count);
+        int link = link_index(scene, marks, count);
+        for (int k = 0; k < loader->objects[i].count; ++k)
+            scene->objects[loader->objects[i].first + k].light_link = link;
     }
 }

@@ -4,8 +4,10 @@
 #include "document.h"
 #include "params_read.h"
 #include "scene_params.h"
+#include "text.h"
 #include "timeline.h"
 #include <tsuya/generate/asset.h>
+#include <tsuya/geometry/gltf.h>
 #include <tsuya/geometry/shape.h>
 #include <tsuya/scene/scene.h>
 
@@ -27,6 +29,7 @@ typedef enum ty_asset_kind
     TY_ASSET_FRAMES,    // files
     TY_ASSET_AGGREGATE, // a file
     TY_ASSET_RECIPE,
+    TY_ASSET_GLTF,
 } ty_asset_kind;
 
 typedef struct ty_asset
@@ -41,12 +44,14 @@ typedef struct ty_asset
     ty_texture_asset_def texture_def;
     ty_frames_asset_def frames_def; // FRAMES, and recipes of frames
     bool used;
-    bool is_texture;         // some material uses it as one
+    bool is_texture; // some material uses it as one
     bool bounds_known;
     ty_bounds bounds;        // of everything, in the asset's own space
     ty_mesh* mesh;           // once loaded
     ty_aggregate* aggregate; // once loaded
     const char* frames;      // RECIPE of frames: the pattern, once made
+    ty_gltf_scene* gltf;     // GLTF, and MESH of such a file: opened ahead of reading the tables; owned by the scene
+    int first_material;      // GLTF: of its materials among the scene's; the one for triangles without comes last
 } ty_asset;
 
 typedef struct ty_attribute_use
@@ -62,12 +67,23 @@ typedef struct ty_object_entry
     int asset, material;  // -1 = wrong, reported
     const ty_node* slots; // `materials`, NULL = none
     ty_affine transform;
-    ty_object_flags flags;
-    bool flags_known;               // found when the world was built first
+    int first, count;               // what it places
     int keys;                       // index in the timeline's entries, -1 = none
     ty_affine *steps, *built_steps; // over the shutter: now, and as the world has them; NULL where nothing moves
     int step_count, step_capacity;  // of built_steps, 0 = not known; of both
 } ty_object_entry;
+
+// An object of the world, by its number there: all of an entry of `objects`, or one of a glTF scene's.
+typedef struct ty_placed_object
+{
+    int entry;
+    const ty_gltf_object* part; // NULL = the asset itself
+    const char* name;           // of what it shows, for messages
+    ty_mesh* mesh;              // either of them once loaded
+    ty_aggregate* aggregate;
+    ty_object_flags flags;
+    bool flags_known; // found when the world was built first
+} ty_placed_object;
 
 // A texture of materials.
 typedef struct ty_surface_texture
@@ -89,7 +105,8 @@ struct ty_scene_resources
 {
     ty_mesh** meshes;
     ty_aggregate** aggregates;
-    int mesh_count, aggregate_count;
+    ty_gltf_scene** gltfs;
+    int mesh_count, aggregate_count, gltf_count;
     const char** passing; // folders of frames that could not be kept, removed at the end
     int passing_count;
     uint32_t depth_field_count;
@@ -119,11 +136,14 @@ typedef struct ty_loader
     int surface_texture_capacity;
     ty_attribute_use* uses;
     int use_count, use_capacity;
-    int current_material; // while its table is read
-    bool* textured;       // [material_count]
-    ty_object_entry* objects;
-    int* light_textures; // [light_count], -1 = none
-    bool is_recipe;      // the root is a recipe, not a scene
+    int current_material;     // while its table is read
+    bool* textured;           // [material_count]
+    ty_object_entry* objects; // [entry_count] of the list
+    int entry_count;
+    ty_placed_object* placed; // [object_count] of the scene
+    ty_node** gltf_materials; // [material_count - those of the section]
+    int* light_textures;      // [light_count], -1 = none
+    bool is_recipe;           // the root is a recipe, not a scene
     ty_timeline timeline;
     ty_node* frame_node; // `frame:` of the file; NULL = the recipe does not tell it
     ty_seed seed;        // as written in `render`
@@ -175,7 +195,8 @@ TY_CHECKED ty_status ty_asset_cache_get(ty_loader* loader, ty_asset* asset, ty_e
 void ty_read_assets(ty_loader* loader);
 int ty_asset_find(ty_loader* loader, const ty_node* name); // index; -1 after a report
 void ty_read_materials(ty_loader* loader);
-void ty_read_view(ty_loader* loader); // film, camera, render, turntable
+int ty_material_find(const ty_loader* loader, const char* name); // -1 = none
+void ty_read_view(ty_loader* loader);                            // film, camera, render, turntable
 void ty_read_lights(ty_loader* loader);
 void ty_read_objects(ty_loader* loader);
 // One of them again, for the values that its keys have now.
@@ -204,9 +225,18 @@ int ty_surface_texture_of_asset(ty_loader* loader, int asset, const ty_node* nam
 int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data);
 void ty_load_surface_textures(ty_loader* loader); // after the assets: recipes make frames
 void ty_set_texture_times(ty_loader* loader);     // to the scene's seconds
+// gltf_expand.c: glTF files that assets name, opened; their cameras and lights into the tree where objects ask for them
+void ty_gltf_expand(ty_loader* loader);
+// gltf_material.c: a glTF material as a mapping of the tree; NULL after a report
+ty_node* ty_gltf_material_node(ty_loader* loader, const ty_asset* asset, int index);
+// Text that this program made, as nodes that messages place at `place`.
+ty_node* ty_made_node(ty_loader* loader, ty_place place, const char* text);
+void ty_text_quote(ty_text* text, const char* word); // as JSON writes it
 // scene_slots.c: the materials of each slot, once the meshes are known
 void ty_resolve_slots(ty_loader* loader);
-// scene_world.c: attributes, objects, trees, depth fields, the shading context
+// scene_world.c: what objects show, once it is loaded
+void ty_bind_objects(ty_loader* loader);
+// attributes, objects, trees, depth fields, the shading context
 void ty_build_attributes(ty_loader* loader);
 void ty_build_world(ty_loader* loader);
 void ty_rebuild_world(ty_loader* loader); // the same objects, where they stand now

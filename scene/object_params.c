@@ -12,6 +12,11 @@ static void mesh_default(void* def)
     *(ty_mesh_asset_def*)def = (ty_mesh_asset_def){0};
 }
 
+static void gltf_default(void* def)
+{
+    *(ty_gltf_asset_def*)def = (ty_gltf_asset_def){.light_scale = 1.0f};
+}
+
 static void texture_default(void* def)
 {
     *(ty_texture_asset_def*)def = (ty_texture_asset_def){.wrap = TY_WRAP_REPEAT};
@@ -35,10 +40,16 @@ static const ty_param object_rows[] = {
     {"mesh", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_object_def, mesh), "a mesh or shape asset", false},
     {"aggregate", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_object_def, aggregate), "an aggregate asset",
      false},
+    {"gltf", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_object_def, gltf),
+     "a glTF asset: its nodes with their meshes and materials", false},
+    {"file_lights", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_object_def, file_lights),
+     "gltf: bring the file's lights as well", false},
+    {"file_camera", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_object_def, file_camera),
+     "gltf: name or number of the file's camera to look through where the scene has no section camera", false},
     {"material", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_object_def, material),
-     "name of a material: of the whole, or of what 'materials' leaves", false},
+     "name of a material: of the whole, or of what 'materials' leaves; a glTF has its own", false},
     {"materials", TY_PARAM_NAMES, "", 0, 0, NULL, NULL, offsetof(ty_object_def, materials),
-     "material of each slot that the file names (OBJ usemtl)", false},
+     "material of each slot that the file names (OBJ usemtl, glTF materials)", false},
     {"translate", TY_PARAM_FLOAT3, "m", -1e9, 1e9, NULL, NULL, offsetof(ty_object_def, translate), "applied last",
      false},
     {"rotate", TY_PARAM_FLOAT3, "deg", -36000, 36000, NULL, NULL, offsetof(ty_object_def, rotate),
@@ -55,7 +66,13 @@ static const ty_param object_rows[] = {
 
 static const ty_param mesh_rows[] = {
     {"mesh", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_mesh_asset_def, mesh),
-     "a recipe (file or in place), or .ply .obj .stl .fbx .dae .off", true},
+     "a recipe (file or in place), or .ply .obj .stl .fbx .dae .off .glb .gltf (all of it as one)", true},
+};
+
+static const ty_param gltf_rows[] = {
+    {"gltf", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_gltf_asset_def, gltf), ".glb or .gltf", true},
+    {"light_scale", TY_PARAM_FLOAT, "", 0, 1e9, NULL, NULL, offsetof(ty_gltf_asset_def, light_scale),
+     "W/sr of a candela, W/m^2 of a lux; emission is W/(m^2 sr) as the file says it", false},
 };
 
 static const char* const wraps[] = {"repeat", "clamp", "mirror", NULL};
@@ -98,13 +115,19 @@ static const ty_param aggregate_rows[] = {
 };
 
 static const ty_param_table object_table = {"object",
-                                            "One entry of the list `objects`: a mesh or an aggregate.",
+                                            "One entry of the list `objects`: a mesh, an aggregate or a glTF scene.",
                                             sizeof(ty_object_def),
                                             object_default,
                                             object_rows,
                                             TY_PARAM_COUNT(object_rows)};
 static const ty_param_table mesh_table = {"asset.mesh", "A mesh file.", sizeof(ty_mesh_asset_def),
                                           mesh_default, mesh_rows,      TY_PARAM_COUNT(mesh_rows)};
+static const ty_param_table gltf_table = {"asset.gltf",
+                                          "A glTF scene: meshes, materials, lights, cameras.",
+                                          sizeof(ty_gltf_asset_def),
+                                          gltf_default,
+                                          gltf_rows,
+                                          TY_PARAM_COUNT(gltf_rows)};
 static const ty_param_table texture_table = {
     "asset.texture", "An image for inputs of materials.", sizeof(ty_texture_asset_def), texture_default,
     texture_rows,    TY_PARAM_COUNT(texture_rows)};
@@ -126,6 +149,11 @@ const ty_param_table* ty_object_params(void)
 const ty_param_table* ty_mesh_asset_params(void)
 {
     return &mesh_table;
+}
+
+const ty_param_table* ty_gltf_asset_params(void)
+{
+    return &gltf_table;
 }
 
 const ty_param_table* ty_texture_asset_params(void)

@@ -275,7 +275,7 @@ char* ty_params_schema(void)
                    "    \"assets\": {\"type\": \"object\", \"additionalProperties\": {\"anyOf\": [{\"$ref\": "
                    "\"#/$defs/asset.mesh\"}, {\"$ref\": \"#/$defs/%s\"}, {\"$ref\": \"#/$defs/asset.texture\"}, "
                    "{\"$ref\": \"#/$defs/asset.frames\"}, {\"$ref\": "
-                   "\"#/$defs/asset.aggregate\"}]}},\n",
+                   "\"#/$defs/asset.aggregate\"}, {\"$ref\": \"#/$defs/asset.gltf\"}]}},\n",
                    ty_shape_params()->name);
     ty_text_add(&out, "    \"materials\": {\"type\": \"object\", \"additionalProperties\": {\"anyOf\": [{\"$ref\": "
                       "\"#/$defs/material.surface\"}, {\"$ref\": \"#/$defs/material.cdrf\"}]}},\n"

@@ -40,6 +40,7 @@ const ty_param_table* const* ty_scene_tables(int* count)
     add(&list, ty_texture_asset_params());
     add(&list, ty_frames_asset_params());
     add(&list, ty_aggregate_asset_params());
+    add(&list, ty_gltf_asset_params());
     add(&list, ty_surface_params());
     add(&list, ty_cdrf_params());
     int generators = 0;

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char* const kinds[] = {"mesh", "shape", "texture", "frames", "aggregate", NULL};
+static const char* const kinds[] = {"mesh", "shape", "texture", "frames", "aggregate", "gltf", NULL};
 
 int ty_texture_index(ty_loader* loader, const ty_texture_def* def, ty_place place)
 {
@@ -103,6 +103,17 @@ static void read_aggregate(ty_loader* loader, ty_node* node, ty_asset* asset)
     read_recipe(loader, node, "aggregate", asset);
 }
 
+// It was opened ahead, as far as it can be read; what hindered that is reported.
+static void read_gltf(ty_loader* loader, ty_node* node, ty_asset* asset)
+{
+    ty_gltf_asset_def def;
+    if (!ty_params_read(&loader->reader, node, ty_gltf_asset_params(), &def, NULL))
+        return;
+    asset->path = def.gltf;
+    if (asset->gltf)
+        asset->kind = TY_ASSET_GLTF;
+}
+
 static void read_asset(ty_loader* loader, ty_node* node, ty_asset* asset)
 {
     char described[80], nearest[TY_NEAREST_SIZE];
@@ -111,9 +122,10 @@ static void read_asset(ty_loader* loader, ty_node* node, ty_asset* asset)
         return;
     if (node->kind != TY_NODE_MAP)
     {
-        ty_report(loader->errors, node->place, TY_BAD_INPUT,
-                  "asset '%.100s': expected a mapping with one of: mesh, shape, texture, frames, aggregate, got %s",
-                  asset->name, ty_node_describe(node, described));
+        ty_report(
+            loader->errors, node->place, TY_BAD_INPUT,
+            "asset '%.100s': expected a mapping with one of: mesh, shape, texture, frames, aggregate, gltf, got %s",
+            asset->name, ty_node_describe(node, described));
         return;
     }
     for (int i = 0; kinds[i]; ++i)
@@ -122,8 +134,8 @@ static void read_asset(ty_loader* loader, ty_node* node, ty_asset* asset)
     if (!kind)
     {
         ty_report(loader->errors, node->place, TY_BAD_INPUT,
-                  "asset '%.100s': expected one of the keys mesh, shape, texture, frames, aggregate%s", asset->name,
-                  node->count ? ty_nearest(node->keys[0].text, kinds, 5, nearest) : "");
+                  "asset '%.100s': expected one of the keys mesh, shape, texture, frames, aggregate, gltf%s",
+                  asset->name, node->count ? ty_nearest(node->keys[0].text, kinds, 6, nearest) : "");
         return;
     }
     asset->place = ty_node_get(node, kind)->place;
@@ -135,8 +147,10 @@ static void read_asset(ty_loader* loader, ty_node* node, ty_asset* asset)
         read_texture(loader, node, asset);
     else if (strcmp(kind, "frames") == 0)
         read_frames(loader, node, asset);
-    else
+    else if (strcmp(kind, "aggregate") == 0)
         read_aggregate(loader, node, asset);
+    else
+        read_gltf(loader, node, asset);
 }
 
 static void resolve_prototype(ty_loader* loader, ty_asset* asset, const ty_node* node)
@@ -156,8 +170,7 @@ static void resolve_prototype(ty_loader* loader, ty_asset* asset, const ty_node*
 void ty_read_assets(ty_loader* loader)
 {
     ty_node* map = loader->asset_map = ty_section(loader, "assets", TY_NODE_MAP);
-    loader->asset_count = map ? map->count : 0;
-    loader->assets = TY_ARENA_ALLOC(loader->tree.arena, ty_asset, loader->asset_count);
+    TY_ASSERT(loader->asset_count == (map ? map->count : 0)); // made by ty_gltf_expand
     for (int i = 0; i < loader->asset_count; ++i)
     {
         ty_asset* asset = &loader->assets[i];

@@ -126,9 +126,31 @@ void ty_read_camera(ty_loader* loader)
     turn(loader->scene);
 }
 
+// Of all parts; empty until the meshes are loaded.
+static ty_bounds gltf_bounds(const ty_gltf_scene* gltf)
+{
+    ty_bounds all = ty_bounds_empty();
+    for (int i = 0; i < gltf->object_count; ++i)
+    {
+        const ty_gltf_object* part = &gltf->objects[i];
+        const ty_mesh* mesh = gltf->meshes[part->mesh];
+        uint32_t count = part->instances ? part->instances->instance_count : mesh ? 1 : 0;
+        for (uint32_t k = 0; k < count; ++k)
+        {
+            ty_affine map = part->to_file;
+            if (part->instances)
+                map = ty_affine_multiply(&part->to_file, &part->instances->transforms[k]);
+            all = ty_bounds_union(all, ty_bounds_map(&map, mesh->bounds));
+        }
+    }
+    return all;
+}
+
 static ty_bounds asset_bounds(const ty_asset* asset)
 {
     const ty_aggregate* aggregate = asset->aggregate;
+    if (asset->kind == TY_ASSET_GLTF)
+        return gltf_bounds(asset->gltf);
     ty_bounds all = ty_bounds_empty();
     if (!aggregate)
         return asset->mesh ? asset->mesh->bounds : all;
@@ -149,7 +171,7 @@ void ty_focus_camera(ty_loader* loader)
     ty_asset* asset = &loader->assets[entry->asset];
     if (!asset->bounds_known)
         asset->bounds = asset_bounds(asset);
-    asset->bounds_known = asset->aggregate || asset->mesh;
+    asset->bounds_known = asset->bounds.low.x <= asset->bounds.high.x;
     if (!asset->bounds_known) // when only checking
         return;
     ty_vec3 middle = ty_mul(ty_add(asset->bounds.low, asset->bounds.high), 0.5f);

@@ -89,6 +89,7 @@ static void load_stages(ty_loader* loader, int first)
     if (!ty_loader_resolve(loader))
         return;
     ty_frame_begin(loader);
+    ty_gltf_expand(loader);
     read_sections(loader);
     ty_frame_check_keys(loader);
     bool good = loader->errors->count == first;
@@ -97,6 +98,7 @@ static void load_stages(ty_loader* loader, int first)
     ty_load_textures(loader);
     ty_load_assets(loader);
     ty_load_surface_textures(loader);
+    ty_bind_objects(loader);
     ty_resolve_slots(loader);
     ty_build_attributes(loader);
     if (loader->errors->count > first)
@@ -185,6 +187,8 @@ void ty_scene_destroy(ty_scene* scene)
         ty_path_folder(scene->resources->passing[i], parent);
         ty_folder_remove(parent);
     }
+    for (int i = 0; i < scene->resources->gltf_count; ++i)
+        ty_gltf_scene_destroy(scene->resources->gltfs[i]);
     ty_color_destroy(scene->color);
     ty_free(scene->resources->recipe);
     if (scene->resources->loader)

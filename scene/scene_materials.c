@@ -105,22 +105,57 @@ void ty_read_material(ty_loader* loader, int index)
     loader->current_material = index;
     ty_material_destroy(loader->scene->materials[index]);
     loader->scene->materials[index] = NULL;
-    read_material(loader, loader->material_map->items[index], index);
+    int own = loader->material_map ? loader->material_map->count : 0;
+    ty_node* node = index < own ? loader->material_map->items[index] : loader->gltf_materials[index - own];
+    if (node)
+        read_material(loader, node, index);
+}
+
+int ty_material_find(const ty_loader* loader, const char* name)
+{
+    int own = loader->material_map ? loader->material_map->count : 0;
+    int found = ty_node_find(loader->material_map, name);
+    for (int i = own; i < loader->scene->material_count && found < 0; ++i)
+        if (strcmp(loader->scene->material_names[i], name) == 0)
+            found = i;
+    return found;
+}
+
+// Those of glTF scenes stand behind the section's, as "asset/name".
+static void name_gltf_materials(ty_loader* loader, int first)
+{
+    int own = first;
+    for (int a = 0; a < loader->asset_count; ++a)
+    {
+        ty_asset* asset = &loader->assets[a];
+        asset->first_material = first;
+        for (int i = 0; asset->kind == TY_ASSET_GLTF && i <= asset->gltf->material_count; ++i, ++first)
+        {
+            const char* name = i < asset->gltf->material_count ? asset->gltf->materials[i].name : TY_GLTF_NO_MATERIAL;
+            loader->scene->material_names[first] = ty_arena_format(loader->arena, "%s/%s", asset->name, name);
+            loader->gltf_materials[first - own] = ty_gltf_material_node(loader, asset, i);
+        }
+    }
 }
 
 void ty_read_materials(ty_loader* loader)
 {
     ty_scene* scene = loader->scene;
     ty_node* map = loader->material_map = ty_section(loader, "materials", TY_NODE_MAP);
-    scene->material_count = map ? map->count : 0;
-    scene->materials = TY_ARENA_ALLOC(loader->arena, ty_material*, scene->material_count);
-    scene->material_names = TY_ARENA_ALLOC(loader->arena, const char*, scene->material_count);
-    loader->textured = TY_ARENA_ALLOC(loader->tree.arena, bool, scene->material_count);
+    int own = map ? map->count : 0, count = own;
+    for (int a = 0; a < loader->asset_count; ++a)
+        if (loader->assets[a].kind == TY_ASSET_GLTF)
+            count += loader->assets[a].gltf->material_count + 1;
+    scene->materials = TY_ARENA_ALLOC(loader->arena, ty_material*, count);
+    scene->material_names = TY_ARENA_ALLOC(loader->arena, const char*, count);
+    scene->material_count = count;
+    loader->textured = TY_ARENA_ALLOC(loader->tree.arena, bool, count);
+    loader->gltf_materials = TY_ARENA_ALLOC(loader->tree.arena, ty_node*, count - own);
     loader->reader.find_texture = find_texture;
     loader->reader.find_attribute = find_attribute;
-    for (int i = 0; i < scene->material_count; ++i)
-    {
+    for (int i = 0; i < own; ++i)
         scene->material_names[i] = ty_arena_string(loader->arena, map->keys[i].text);
+    name_gltf_materials(loader, own);
+    for (int i = 0; i < count; ++i)
         ty_read_material(loader, i);
-    }
 }

@@ -48,7 +48,7 @@ static bool may_move(const ty_loader* loader, int object)
 // The view is at that moment already.
 static void pose_objects(ty_loader* loader, ty_moment moment)
 {
-    for (int i = 0; i < loader->scene->object_count; ++i)
+    for (int i = 0; i < loader->entry_count; ++i)
     {
         ty_object_entry* entry = &loader->objects[i];
         if (!may_move(loader, i))
@@ -101,12 +101,12 @@ static void settle_object(ty_loader* loader, ty_object_entry* entry, int count)
 static void allocate_steps(ty_loader* loader, int count)
 {
     ty_scene* scene = loader->scene;
-    for (int i = 0; i < scene->object_count; ++i)
+    for (int i = 0; i < loader->entry_count; ++i)
         loader->objects[i].keys = -1;
     for (int i = 0; i < loader->timeline.entry_count; ++i)
         if (is_section(&loader->timeline.entries[i], TY_SECTION_OBJECT))
             loader->objects[loader->timeline.entries[i].index].keys = i;
-    for (int i = 0; i < scene->object_count; ++i)
+    for (int i = 0; i < loader->entry_count; ++i)
     {
         ty_object_entry* entry = &loader->objects[i];
         if (!may_move(loader, i) || entry->step_capacity >= count)
@@ -147,7 +147,7 @@ static void settle(ty_loader* loader, int count)
         if (!same_camera(&scene->camera_steps[i], &scene->camera_steps[0]))
             scene->camera_step_count = count;
     scene->moves = scene->camera_step_count > 1;
-    for (int i = 0; i < scene->object_count; ++i)
+    for (int i = 0; i < loader->entry_count; ++i)
     {
         if (!may_move(loader, i))
             continue;
@@ -166,7 +166,7 @@ static void pose(ty_loader* loader, ty_moment moment)
 static void keep_pose(ty_loader* loader, int step)
 {
     loader->scene->camera_steps[step] = loader->scene->camera;
-    for (int i = 0; i < loader->scene->object_count; ++i)
+    for (int i = 0; i < loader->entry_count; ++i)
         if (may_move(loader, i))
             loader->objects[i].steps[step] = loader->objects[i].transform;
 }

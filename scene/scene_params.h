@@ -9,6 +9,9 @@ typedef struct ty_object_def
     const char* name;
     const char* mesh;      // asset
     const char* aggregate; // asset
+    const char* gltf;      // asset
+    bool file_lights;      // those of the glTF file too
+    const char* file_camera;
     const char* material;
     ty_param_list materials;          // of ty_param_name: slot, material
     ty_vec3 translate, rotate, scale; // m, radians, 1
@@ -47,7 +50,14 @@ typedef struct ty_aggregate_asset_def
     const char* prototype; // asset
 } ty_aggregate_asset_def;
 
+typedef struct ty_gltf_asset_def
+{
+    const char* gltf; // path
+    float light_scale;
+} ty_gltf_asset_def;
+
 const ty_param_table* ty_object_params(void);
+const ty_param_table* ty_gltf_asset_params(void);
 const ty_param_table* ty_mesh_asset_params(void);
 const ty_param_table* ty_texture_asset_params(void);
 const ty_param_table* ty_frames_asset_params(void);

@@ -5,25 +5,41 @@
 #include <string.h>
 #include <tsuya/base/log.h>
 
-// The meshes of an asset: one, or an aggregate's prototypes.
+// The meshes of an object: one, or an aggregate's prototypes.
 typedef struct meshes
 {
     ty_mesh* const* items;
     int count;
 } meshes;
 
-static meshes asset_meshes(const ty_asset* asset)
+static meshes meshes_of(const ty_placed_object* placed)
 {
-    if (asset->aggregate)
-        return (meshes){asset->aggregate->prototypes, asset->aggregate->prototype_count};
-    return (meshes){&asset->mesh, asset->mesh ? 1 : 0};
+    if (placed->aggregate)
+        return (meshes){placed->aggregate->prototypes, placed->aggregate->prototype_count};
+    return (meshes){&placed->mesh, placed->mesh ? 1 : 0};
 }
 
-static bool has_attribute(const ty_asset* asset, const char* name)
+void ty_bind_objects(ty_loader* loader)
+{
+    for (int i = 0; i < loader->scene->object_count; ++i)
+    {
+        ty_placed_object* placed = &loader->placed[i];
+        int index = loader->objects[placed->entry].asset;
+        const ty_asset* asset = index >= 0 ? &loader->assets[index] : NULL;
+        if (!asset)
+            continue;
+        placed->mesh = placed->part ? asset->gltf->meshes[placed->part->mesh] : asset->mesh;
+        placed->aggregate = placed->part ? placed->part->instances : asset->aggregate;
+        if (placed->aggregate)
+            placed->mesh = NULL;
+    }
+}
+
+static bool has_attribute(const ty_placed_object* asset, const char* name)
 {
     if (asset->aggregate && ty_aggregate_find_attribute(asset->aggregate, name))
         return true;
-    meshes all = asset_meshes(asset);
+    meshes all = meshes_of(asset);
     for (int i = 0; i < all.count; ++i)
         if (!ty_mesh_find_attribute(all.items[i], name))
             return false;
@@ -31,13 +47,12 @@ static bool has_attribute(const ty_asset* asset, const char* name)
 }
 
 // What an object's material takes from an attribute must be there: of the instances, else of the vertices.
-static void check_attribute(ty_loader* loader, const ty_object_entry* entry, const ty_attribute_use* use)
+static void check_attribute(ty_loader* loader, const ty_placed_object* asset, const ty_attribute_use* use)
 {
-    const ty_asset* asset = &loader->assets[entry->asset];
     const char* name = loader->scene->attribute_names[use->attribute];
     if (has_attribute(asset, name))
         return;
-    meshes all = asset_meshes(asset);
+    meshes all = meshes_of(asset);
     int of_instances = asset->aggregate ? asset->aggregate->attribute_count : 0, count = 0;
     const char** names = TY_ALLOC(const char*, of_instances + all.items[0]->attribute_count);
     for (int i = 0; i < of_instances; ++i)
@@ -79,12 +94,11 @@ void ty_build_attributes(ty_loader* loader)
     ty_scene* scene = loader->scene;
     for (int i = 0; i < scene->object_count; ++i)
     {
-        const ty_object_entry* entry = &loader->objects[i];
-        const ty_asset* asset = entry->asset >= 0 ? &loader->assets[entry->asset] : NULL;
-        set_attributes(loader, &scene->objects[i], asset ? asset->aggregate : NULL);
-        for (int u = 0; asset && asset_meshes(asset).count > 0 && u < loader->use_count; ++u)
+        const ty_placed_object* placed = &loader->placed[i];
+        set_attributes(loader, &scene->objects[i], placed->aggregate);
+        for (int u = 0; meshes_of(placed).count > 0 && u < loader->use_count; ++u)
             if (shows_material(&scene->objects[i], loader->uses[u].material))
-                check_attribute(loader, entry, &loader->uses[u]);
+                check_attribute(loader, placed, &loader->uses[u]);
     }
 }
 
@@ -112,12 +126,13 @@ static void warn_untextured(const ty_loader* loader, const ty_scene_object* obje
 }
 
 // Looked at once: neither meshes nor materials change their kind from frame to frame.
-static ty_object_flags object_flags(const ty_loader* loader, const ty_scene_object* object, const ty_asset* asset)
+static ty_object_flags object_flags(const ty_loader* loader, const ty_scene_object* object,
+                                    const ty_placed_object* asset)
 {
     ty_object_flags flags = {.mask = TY_MASK_OPAQUE};
     for (uint32_t k = 0; k < ty_scene_material_count(object); ++k)
         flags.closed_subsurface |= ty_material_is_subsurface(loader->scene->materials[ty_scene_material_at(object, k)]);
-    meshes all = asset_meshes(asset);
+    meshes all = meshes_of(asset);
     for (int i = 0; i < all.count; ++i)
     {
         flags.closed_subsurface = flags.closed_subsurface && is_closed(all.items[i], asset->name);
@@ -126,32 +141,39 @@ static ty_object_flags object_flags(const ty_loader* loader, const ty_scene_obje
     return flags;
 }
 
-static ty_motion object_motion(const ty_object_entry* entry)
+// What moves while the shutter is open; steps has room for all of a part's, which its entry carries along.
+static ty_motion object_motion(const ty_object_entry* entry, const ty_placed_object* placed,
+                               ty_affine steps[TY_MOTION_MAX_STEPS])
 {
-    return entry->step_count > 0 ? (ty_motion){entry->built_steps, entry->step_count}
-                                 : ty_motion_at_rest(&entry->transform);
+    ty_motion motion = entry->step_count > 0 ? (ty_motion){entry->built_steps, entry->step_count}
+                                             : ty_motion_at_rest(&entry->transform);
+    if (!placed->part)
+        return motion;
+    for (int i = 0; i < motion.step_count; ++i)
+        steps[i] = ty_affine_multiply(&motion.steps[i], &placed->part->to_file);
+    return (ty_motion){steps, motion.step_count};
 }
 
 static ty_status add_object(ty_loader* loader, int index, ty_error* error)
 {
     ty_scene* scene = loader->scene;
-    ty_object_entry* entry = &loader->objects[index];
-    const ty_asset* asset = &loader->assets[entry->asset];
-    if (!entry->flags_known)
-        entry->flags = object_flags(loader, &scene->objects[index], asset);
-    entry->flags_known = true;
+    ty_placed_object* placed = &loader->placed[index];
+    ty_affine steps[TY_MOTION_MAX_STEPS];
+    ty_motion motion = object_motion(&loader->objects[placed->entry], placed, steps);
+    if (!placed->flags_known)
+        placed->flags = object_flags(loader, &scene->objects[index], placed);
+    placed->flags_known = true;
     uint32_t number = 0, prototype = 0;
     ty_status status = TY_OK;
-    if (asset->aggregate)
+    if (placed->aggregate)
     {
-        status =
-            ty_world_add_aggregate(scene->world, asset->aggregate, object_motion(entry), entry->flags, &number, error);
+        status = ty_world_add_aggregate(scene->world, placed->aggregate, motion, placed->flags, &number, error);
     }
     else
     {
-        status = ty_world_add_prototype(scene->world, asset->mesh, &prototype, error);
+        status = ty_world_add_prototype(scene->world, placed->mesh, &prototype, error);
         if (status == TY_OK)
-            status = ty_world_add_object(scene->world, prototype, object_motion(entry), entry->flags, &number, error);
+            status = ty_world_add_object(scene->world, prototype, motion, placed->flags, &number, error);
     }
     TY_ASSERT(status != TY_OK || number == (uint32_t)index);
     return status;
@@ -236,7 +258,7 @@ static bool fill_world(ty_loader* loader)
     {
         if (add_object(loader, i, &error) == TY_OK)
             continue;
-        ty_report_error(loader->errors, loader->objects[i].place, scene->objects[i].name, &error);
+        ty_report_error(loader->errors, loader->objects[loader->placed[i].entry].place, scene->objects[i].name, &error);
         return false;
     }
     loader->world_changed = false;

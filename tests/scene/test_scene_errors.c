@@ -137,7 +137,7 @@ static void objects(void** state)
         {"{ mesh: bal, material: m }", 19, "no asset 'bal'; did you mean 'ball'?"},
         {"{ aggregate: ball, material: m }", 24, "asset 'ball' is no aggregate"},
         {"{ mesh: ball }", 11, "missing key 'material' (or 'materials') of an object"},
-        {"{ material: m }", 11, "missing key 'mesh' or 'aggregate'"},
+        {"{ material: m }", 11, "missing key 'mesh', 'aggregate' or 'gltf'"},
         {"{ mesh: ball, aggregate: ball, material: m }", 36, "not both"},
         {"{ mesh: ball, material: m, scale: [1, 0, 1] }", 45, "flat"},
         {"{ mesh: ball, material: m, scale: big }", 45, "'scale': expected three numbers"},
