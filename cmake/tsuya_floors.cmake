@@ -42,6 +42,13 @@ function(tsuya_floor name)
     endif()
     add_library(tsuya_${name} STATIC ${sources})
     tsuya_compile_options(tsuya_${name})
+    if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+        # Kernels built a second time; who calls them asks the CPU first.
+        set(wide ${sources})
+        list(FILTER wide INCLUDE REGEX "_avx512\\.c$")
+        set_source_files_properties(${wide} PROPERTIES COMPILE_OPTIONS
+            "-mavx512f;-mavx512dq;-mavx512bw;-mavx512vl;-mavx512cd;-mno-fma")
+    endif()
     target_link_libraries(tsuya_${name} PRIVATE ${floor_LIBRARIES})
     foreach(dependency ${floor_DEPENDS})
         target_link_libraries(tsuya_${name} PUBLIC tsuya_${dependency})

@@ -4,6 +4,10 @@
 #include <string.h>
 #include <tsuya/base/memory.h>
 
+// Up to this many plain objects at rest, the largest, are left to Embree: a bowl about a heap would be in every ray's
+// way through the wide level, where what is near comes first.
+#define LARGE_OBJECTS 64
+
 ty_world_def ty_world_def_default(void)
 {
     return (ty_world_def){TY_TRACE_FAST, NULL};
@@ -77,6 +81,7 @@ static ty_status create_device(ty_world* world, const char* isa, ty_error* error
         strcat(config, known[i]);
     }
     world->isa = isa ? ty_string_copy(isa) : ty_string_copy(best_isa());
+    world->use_avx512 = strcmp(world->isa, "avx512") == 0;
     world->device = rtcNewDevice(config);
     if (!world->device)
     {
@@ -145,8 +150,9 @@ static RTCGeometry create_instance_geometry(const ty_world* world, const ty_trac
     RTCGeometry geometry = rtcNewGeometry(world->device, RTC_GEOMETRY_TYPE_INSTANCE);
     if (!geometry)
         return NULL;
+    const ty_trace_prototype* prototype = &world->prototypes[ty_trace_prototype_of(object, instance)];
     ty_affine inner = ty_trace_inner_map(object, instance);
-    rtcSetGeometryInstancedScene(geometry, world->prototypes[ty_trace_prototype_of(object, instance)].scene);
+    rtcSetGeometryInstancedScene(geometry, prototype->scene);
     rtcSetGeometryTimeStepCount(geometry, (unsigned)object->step_count);
     for (int i = 0; i < object->step_count; i++)
     {
@@ -164,54 +170,111 @@ static void attach(ty_world* world, RTCGeometry geometry, uint32_t mask, uint32_
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(world->scene, geometry, id);
     rtcReleaseGeometry(geometry);
+    world->has_rest = true;
 }
 
-// Geometry ids: the object's on the fast path, the instance's (among all) on the reference path.
-static void attach_object(ty_world* world, ty_trace_object* object)
+// Geometry ids: the instance's among all.
+static void attach_reference(ty_world* world)
 {
-    if (world->path == TY_TRACE_REFERENCE)
-        for (uint32_t i = 0; i < object->count; i++)
+    for (uint32_t k = 0; k < world->object_count; k++)
+        for (uint32_t i = 0; i < world->objects[k].count; i++)
+        {
+            const ty_trace_object* object = &world->objects[k];
             attach(world, create_instance_geometry(world, object, i), object->mask, object->first + i);
-    else if (object->step_count > 1)
-        attach(world, ty_trace_create_moving_geometry(world, object), object->mask, object->index);
-    else if (object->aggregate)
-        attach(world, ty_trace_create_user_geometry(world, object), object->mask, object->index);
-    else
-        attach(world, create_instance_geometry(world, object, 0), object->mask, object->index);
+        }
 }
 
-static void fit_ellipsoids(ty_world* world)
+static float box_area(const ty_trace_object* object)
 {
+    ty_bounds box = ty_trace_step_bounds(object, 0);
+    ty_vec3 d = ty_sub(box.high, box.low);
+    return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+// What the plain objects at rest must be larger than to be Embree's: all of them are when they are few.
+static float largest_of_the_small(const ty_world* world)
+{
+    float largest[LARGE_OBJECTS + 1] = {0}; // descending
     for (uint32_t i = 0; i < world->object_count; i++)
     {
         const ty_trace_object* object = &world->objects[i];
-        for (int k = 0; object->aggregate && k < object->aggregate->prototype_count; k++)
-        {
-            ty_trace_prototype* prototype = &world->prototypes[object->prototypes[k]];
-            if (!prototype->has_ellipsoid)
-                ty_trace_fit_ellipsoid(prototype);
-        }
+        if (object->aggregate || object->step_count > 1)
+            continue;
+        float area = box_area(object);
+        for (int k = 0; k <= LARGE_OBJECTS; k++)
+            if (area > largest[k])
+            {
+                float pushed = largest[k];
+                largest[k] = area;
+                area = pushed;
+            }
+    }
+    return largest[LARGE_OBJECTS];
+}
+
+// Embree gets what moves and the largest plain objects, by the object's number as geometry id; the wide level all
+// else.
+static ty_status attach_fast(ty_world* world, ty_error* error)
+{
+    float small = largest_of_the_small(world);
+    uint32_t* wide = TY_TRY_ALLOC(uint32_t, world->object_count);
+    if (!wide)
+        return ty_error_set(error, TY_NO_MEMORY, "no memory for %u objects", world->object_count);
+    uint32_t count = 0;
+    ty_status status = TY_OK;
+    for (uint32_t i = 0; i < world->object_count && status == TY_OK; i++)
+    {
+        ty_trace_object* object = &world->objects[i];
+        bool moves = object->step_count > 1;
+        if (moves && object->aggregate)
+            status = ty_trace_wide_create(world, &i, 1, &object->wide, error);
+        if (moves)
+            attach(world, ty_trace_create_moving_geometry(world, object), object->mask, i);
+        else if (!object->aggregate && box_area(object) > small)
+            attach(world, create_instance_geometry(world, object, 0), object->mask, i);
+        else
+            wide[count++] = i;
+    }
+    if (status == TY_OK)
+        status = ty_trace_wide_create(world, wide, count, &world->wide, error);
+    ty_free(wide);
+    return status;
+}
+
+// Worth its time where many instances share the prototypes.
+static void find_horizons(ty_world* world)
+{
+    for (uint32_t i = 0; i < world->object_count; i++)
+    {
+        const ty_aggregate* aggregate = world->objects[i].aggregate;
+        if (!aggregate || aggregate->instance_count < 16u * (uint32_t)aggregate->prototype_count)
+            continue;
+        for (int k = 0; k < aggregate->prototype_count; k++)
+            ty_trace_find_horizons(&world->prototypes[world->objects[i].prototypes[k]]);
     }
 }
 
 ty_status ty_world_commit(ty_world* world, ty_error* error)
 {
     TY_ASSERT(!world->scene);
-    if (world->path == TY_TRACE_FAST)
-        fit_ellipsoids(world);
     world->scene = rtcNewScene(world->device);
     rtcSetSceneBuildQuality(world->scene, RTC_BUILD_QUALITY_HIGH);
     rtcSetSceneFlags(world->scene, TY_EMBREE_FILTER_FLAG);
+    ty_status status = TY_OK;
     for (uint32_t i = 0; i < world->object_count; i++)
-    {
         world->objects[i].world = world;
-        attach_object(world, &world->objects[i]);
+    if (world->path == TY_TRACE_REFERENCE)
+        attach_reference(world);
+    else
+    {
+        find_horizons(world);
+        status = attach_fast(world, error);
     }
     rtcCommitScene(world->scene);
     for (uint32_t i = 0; i < world->object_count; i++)
         for (int k = 0; k < world->objects[i].step_count; k++)
             world->bounds = ty_bounds_union(world->bounds, ty_trace_step_bounds(&world->objects[i], k));
-    return ty_trace_take_error(world, "top level", error);
+    return status == TY_OK ? ty_trace_take_error(world, "top level", error) : status;
 }
 
 ty_bounds ty_world_bounds(const ty_world* world)
@@ -221,16 +284,13 @@ ty_bounds ty_world_bounds(const ty_world* world)
 
 static uint64_t object_memory(const ty_trace_object* object)
 {
-    uint64_t bytes = sizeof *object + (uint64_t)object->step_count * sizeof(ty_affine);
-    if (object->to_local)
-        bytes += (uint64_t)object->count * sizeof(ty_affine);
-    return bytes;
+    return sizeof *object + (uint64_t)object->step_count * sizeof(ty_affine) + ty_trace_wide_memory(object->wide);
 }
 
 uint64_t ty_world_memory(const ty_world* world)
 {
-    uint64_t bytes =
-        (uint64_t)atomic_load(&world->embree_bytes) + world->prototype_capacity * sizeof(ty_trace_prototype);
+    uint64_t bytes = (uint64_t)atomic_load(&world->embree_bytes) + ty_trace_wide_memory(world->wide) +
+                     world->prototype_capacity * sizeof(ty_trace_prototype);
     for (uint32_t i = 0; i < world->object_count; i++)
         bytes += object_memory(&world->objects[i]);
     return bytes;

@@ -4,6 +4,7 @@
 
 #define DIRECTIONS 256
 #define MAX_POINTS (DIRECTIONS + 6)
+#define ENOUGH_VERTICES 50000u // of larger meshes every n-th is looked at; all are enclosed in the end
 
 typedef struct fit
 {
@@ -17,6 +18,7 @@ typedef struct fit
 // Extreme vertices along directions spread by a Fibonacci spiral: a small set with nearly the mesh's own hull.
 static void gather_extremes(const ty_mesh* mesh, fit* f)
 {
+    const uint32_t stride = 1 + mesh->vertex_count / ENOUGH_VERTICES;
     for (int i = 0; i < DIRECTIONS; i++)
     {
         double z = 1.0 - (2.0 * i + 1.0) / DIRECTIONS, phi = i * 2.399963229728653;
@@ -24,7 +26,7 @@ static void gather_extremes(const ty_mesh* mesh, fit* f)
         ty_vec3 direction = {(float)(r * cos(phi)), (float)(r * sin(phi)), (float)z};
         uint32_t best = 0;
         float reach = ty_dot(mesh->positions[0], direction);
-        for (uint32_t k = 1; k < mesh->vertex_count; k++)
+        for (uint32_t k = 1; k < mesh->vertex_count; k += stride)
         {
             float s = ty_dot(mesh->positions[k], direction);
             if (s > reach)
@@ -136,10 +138,32 @@ void ty_trace_fit_ellipsoid(ty_trace_prototype* prototype)
                    {0.0f, (float)(f.l[1][1] * r), (float)(f.l[2][1] * r)},
                    {0.0f, 0.0f, (float)(f.l[2][2] * r)},
                    {(float)f.center[0], (float)f.center[1], (float)f.center[2]}};
+    // What has no extent at all gets a ball.
+    if (!ty_affine_invert(&m, &prototype->to_sphere))
+    {
+        m = (ty_affine){{1e-3f, 0, 0}, {0, 1e-3f, 0}, {0, 0, 1e-3f}, prototype->bounds.low};
+        prototype->to_sphere = (ty_affine){{1e3f, 0, 0}, {0, 1e3f, 0}, {0, 0, 1e3f}, ty_mul(m.t, -1e3f)};
+    }
     prototype->from_sphere = m;
-    prototype->has_ellipsoid = ty_affine_invert(&m, &prototype->to_sphere);
-    const ty_affine* s = &prototype->to_sphere;
-    prototype->sphere_scale =
-        ty_max(fabsf(s->x.x) + fabsf(s->y.x) + fabsf(s->z.x),
-               ty_max(fabsf(s->x.y) + fabsf(s->y.y) + fabsf(s->z.y), fabsf(s->x.z) + fabsf(s->y.z) + fabsf(s->z.z)));
+    prototype->has_ellipsoid = true;
+}
+
+void ty_trace_fit_inner(const ty_world* world, uint32_t prototype)
+{
+    ty_trace_prototype* p = &world->prototypes[prototype];
+    if (!ty_world_inside(world, prototype, p->from_sphere.t))
+        return;
+    float nearest_sqr = 1.0f;
+    for (uint32_t i = 0; i < p->mesh->triangle_count; i++)
+    {
+        ty_vec3 corner[3], zero = {0, 0, 0};
+        for (int k = 0; k < 3; k++)
+            corner[k] = ty_map_point(&p->to_sphere, p->mesh->positions[p->mesh->triangles[i][k]]);
+        ty_vec2 w = ty_trace_closest_on_triangle(zero, corner[0], corner[1], corner[2]);
+        ty_vec3 at = ty_mad(ty_mad(corner[0], ty_sub(corner[1], corner[0]), w.x), ty_sub(corner[2], corner[0]), w.y);
+        nearest_sqr = ty_min(nearest_sqr, ty_length_sqr(at));
+    }
+    // Smaller by what rounds in the test of a ray that comes from far away.
+    float radius = 0.999f * sqrtf(nearest_sqr) - 1e-3f;
+    p->inner_radius_sqr = radius > 0.0f ? radius * radius : 0.0f;
 }

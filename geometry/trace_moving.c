@@ -26,6 +26,16 @@ static void write_bounds(const struct RTCBoundsFunctionArguments* args)
                                          box.high.x + pad, box.high.y + pad, box.high.z + pad, 0.0f};
 }
 
+static void set_ray(struct RTCRay* ray, ty_vec3 origin, ty_vec3 direction)
+{
+    ray->org_x = origin.x;
+    ray->org_y = origin.y;
+    ray->org_z = origin.z;
+    ray->dir_x = direction.x;
+    ray->dir_y = direction.y;
+    ray->dir_z = direction.z;
+}
+
 // The ray in the object's space; the direction keeps its length in world space, so t means the same in both.
 static bool enter(const ty_trace_object* object, const struct RTCRay* ray, struct RTCRay* local)
 {
@@ -35,12 +45,7 @@ static bool enter(const ty_trace_object* object, const struct RTCRay* ray, struc
     ty_vec3 o = ty_map_point(&to_local, ty_vec3_make(ray->org_x, ray->org_y, ray->org_z));
     ty_vec3 d = ty_map_vector(&to_local, ty_vec3_make(ray->dir_x, ray->dir_y, ray->dir_z));
     *local = *ray;
-    local->org_x = o.x;
-    local->org_y = o.y;
-    local->org_z = o.z;
-    local->dir_x = d.x;
-    local->dir_y = d.y;
-    local->dir_z = d.z;
+    set_ray(local, o, d);
     return true;
 }
 
@@ -50,68 +55,57 @@ static bool is_skipped(const ty_trace_object* object, const ty_ray* ray)
            ray->skip_distance >= TY_FLOAT_MAX;
 }
 
-// What lies below: the prototype of a plain object, or the instances of an aggregate.
-static RTCScene scene_below(const ty_trace_object* object)
-{
-    return object->aggregate ? object->scene : object->world->prototypes[object->prototypes[0]].scene;
-}
-
-static RTCFilterFunctionN filter_below(const ty_trace_object* object, const ty_ray* ray)
-{
-    return object->aggregate ? NULL : ty_trace_needed_filter(object, ray, 0);
-}
-
 static void intersect_moving(const struct RTCIntersectFunctionNArguments* args)
 {
     const ty_trace_object* object = args->geometryUserPtr;
+    const ty_world* world = object->world;
     const ty_ray* ray = ((const ty_trace_context*)args->context)->ray;
     struct RTCRayHit *ray_hit = (struct RTCRayHit*)args->rayhit, local;
     if (!args->valid[0] || is_skipped(object, ray) || !enter(object, &ray_hit->ray, &local.ray))
         return;
     local.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     local.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    ty_trace_context inner = {.world = object->world, .ray = ray, .object = object->index, .instance = 0};
-    ty_embree_context_init(&inner.embree);
-    ty_embree_intersect(scene_below(object), &inner.embree, filter_below(object, ray), &local);
+    if (object->aggregate)
+        ty_trace_wide_intersect(world, object->wide, ray, &local);
+    else
+    {
+        const ty_trace_prototype* prototype = &world->prototypes[object->prototypes[0]];
+        ty_trace_context inner = {.world = world, .ray = ray, .object = object->index, .instance = 0};
+        ty_embree_context_init(&inner.embree);
+        ty_embree_intersect(prototype->scene, &inner.embree, ty_trace_needed_filter(object, ray, 0), &local);
+    }
     if (local.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return;
     ray_hit->ray.tfar = local.ray.tfar;
     ray_hit->hit = local.hit;
+    // As an Embree instance of a plain object leaves it: the object as instance id; the geometry tells the instance.
     ray_hit->hit.instID[0] = args->geomID;
 }
 
 static void occlude_moving(const struct RTCOccludedFunctionNArguments* args)
 {
     const ty_trace_object* object = args->geometryUserPtr;
+    const ty_world* world = object->world;
     const ty_ray* ray = ((const ty_trace_context*)args->context)->ray;
     struct RTCRay *outer = (struct RTCRay*)args->ray, local;
     if (!args->valid[0] || is_skipped(object, ray) || !enter(object, outer, &local))
         return;
-    ty_trace_context inner = {.world = object->world, .ray = ray, .object = object->index, .instance = 0};
+    if (object->aggregate)
+    {
+        if (ty_trace_wide_occluded(world, object->wide, ray, &local))
+            outer->tfar = -INFINITY;
+        return;
+    }
+    const ty_trace_prototype* prototype = &world->prototypes[object->prototypes[0]];
+    ty_trace_context inner = {.world = world, .ray = ray, .object = object->index, .instance = 0};
     ty_embree_context_init(&inner.embree);
-    ty_embree_occluded(scene_below(object), &inner.embree, filter_below(object, ray), &local);
+    ty_embree_occluded(prototype->scene, &inner.embree, ty_trace_needed_filter(object, ray, 0), &local);
     if (local.tfar < 0.0f)
         outer->tfar = local.tfar;
 }
 
-static bool build_below(ty_world* world, ty_trace_object* object)
+RTCGeometry ty_trace_create_moving_geometry(const ty_world* world, ty_trace_object* object)
 {
-    object->scene = rtcNewScene(world->device);
-    RTCGeometry instances = ty_trace_create_user_geometry(world, object);
-    if (!object->scene || !instances)
-        return false;
-    rtcSetSceneBuildQuality(object->scene, RTC_BUILD_QUALITY_HIGH);
-    rtcCommitGeometry(instances);
-    rtcAttachGeometryByID(object->scene, instances, object->index);
-    rtcReleaseGeometry(instances);
-    rtcCommitScene(object->scene);
-    return true;
-}
-
-RTCGeometry ty_trace_create_moving_geometry(ty_world* world, ty_trace_object* object)
-{
-    if (object->aggregate && !build_below(world, object))
-        return NULL;
     RTCGeometry geometry = rtcNewGeometry(world->device, RTC_GEOMETRY_TYPE_USER);
     if (!geometry)
         return NULL;

@@ -5,11 +5,9 @@
 
 static void free_object(ty_trace_object* object)
 {
-    if (object->scene)
-        rtcReleaseScene(object->scene);
+    ty_trace_wide_destroy(object->wide);
     ty_free(object->prototypes);
     ty_free(object->steps);
-    ty_free(object->to_local);
 }
 
 void ty_trace_free_objects(ty_world* world)
@@ -25,6 +23,9 @@ void ty_world_clear_objects(ty_world* world)
     if (world->scene)
         rtcReleaseScene(world->scene);
     world->scene = NULL;
+    ty_trace_wide_destroy(world->wide);
+    world->wide = NULL;
+    world->has_rest = false;
     ty_trace_free_objects(world);
     world->has_subsurface = false;
     world->bounds = ty_bounds_empty();

@@ -7,8 +7,9 @@
 // Splitting triangles pays for small prototypes; above this many it costs more time than it gives.
 #define HIGH_QUALITY_TRIANGLES 200000u
 
-static ty_status build_prototype_scene(ty_world* world, const ty_mesh* mesh, RTCScene* out, ty_error* error)
+static ty_status build_prototype_scene(ty_world* world, ty_trace_prototype* prototype, ty_error* error)
 {
+    const ty_mesh* mesh = prototype->mesh;
     RTCScene scene = rtcNewScene(world->device);
     RTCGeometry geometry = rtcNewGeometry(world->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     bool high = mesh->triangle_count <= HIGH_QUALITY_TRIANGLES;
@@ -31,7 +32,7 @@ static ty_status build_prototype_scene(ty_world* world, const ty_mesh* mesh, RTC
     if (status != TY_OK)
         rtcReleaseScene(scene);
     else
-        *out = scene;
+        prototype->scene = scene;
     return status;
 }
 
@@ -70,12 +71,15 @@ ty_status ty_world_add_prototype(ty_world* world, const ty_mesh* mesh, uint32_t*
     if (!ty_trace_make_room((void**)&world->prototypes, world->prototype_count, &world->prototype_capacity,
                             sizeof world->prototypes[0]))
         return ty_error_set(error, TY_NO_MEMORY, "no memory for another prototype");
-    ty_trace_prototype added = {.mesh = mesh, .bounds = ty_bounds_empty()};
-    ty_status status = build_prototype_scene(world, mesh, &added.scene, error);
-    if (status != TY_OK)
-        return status;
+    ty_trace_prototype added = {.mesh = mesh,
+                                .bounds = ty_bounds_empty(),
+                                .to_sphere = ty_affine_identity(),
+                                .from_sphere = ty_affine_identity()};
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
         added.bounds = ty_bounds_add(added.bounds, mesh->positions[i]);
+    ty_status status = build_prototype_scene(world, &added, error);
+    if (status != TY_OK)
+        return status;
     analyse(mesh, &added.topology);
     *prototype = free_slot(world);
     world->prototypes[*prototype] = added;
@@ -101,6 +105,7 @@ void ty_world_remove_prototype(ty_world* world, uint32_t prototype)
 {
     TY_ASSERT(prototype < world->prototype_count && !is_used(world, prototype));
     rtcReleaseScene(world->prototypes[prototype].scene);
+    ty_free(world->prototypes[prototype].horizons);
     world->prototypes[prototype] = (ty_trace_prototype){0};
     while (world->prototype_count > 0 && !world->prototypes[world->prototype_count - 1].mesh)
         world->prototype_count--;

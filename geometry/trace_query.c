@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Queries against a committed world: nearest hit, occlusion, one instance, closest point, inside.
-#include "trace_world.h"
+#include "trace_wide.h"
 
 // --- which hits a ray passes through ---
 
@@ -73,6 +73,41 @@ static ty_trace_context make_context(const ty_world* world, const ty_ray* ray)
     return context;
 }
 
+static ty_wide_query wide_query(const ty_world* world, const ty_ray* ray, const struct RTCRay* r)
+{
+    bool skips = ray->skip_object != TY_NONE && ray->skip_instance != TY_NONE;
+    return (ty_wide_query){.origin = {r->org_x, r->org_y, r->org_z},
+                           .direction = {r->dir_x, r->dir_y, r->dir_z},
+                           .t_min = r->tnear,
+                           .t_max = r->tfar,
+                           .ray = ray,
+                           .skip = skips ? world->objects[ray->skip_object].first + ray->skip_instance : TY_NONE};
+}
+
+void ty_trace_wide_intersect(const ty_world* world, const ty_trace_wide* wide, const ty_ray* ray,
+                             struct RTCRayHit* ray_hit)
+{
+    ty_wide_query q = wide_query(world, ray, &ray_hit->ray);
+    bool found =
+        world->use_avx512 ? ty_wide_intersect_avx512(world, wide, &q) : ty_wide_intersect_base(world, wide, &q);
+    if (!found)
+        return;
+    const ty_trace_object* object = ty_trace_object_of(world, q.instance);
+    ray_hit->ray.tfar = q.t_max;
+    ray_hit->hit.u = q.u;
+    ray_hit->hit.v = q.v;
+    ray_hit->hit.primID = q.triangle;
+    ray_hit->hit.geomID = q.instance - object->first;
+    ray_hit->hit.instID[0] = object->index;
+}
+
+bool ty_trace_wide_occluded(const ty_world* world, const ty_trace_wide* wide, const ty_ray* ray,
+                            const struct RTCRay* embree_ray)
+{
+    ty_wide_query q = wide_query(world, ray, embree_ray);
+    return world->use_avx512 ? ty_wide_occluded_avx512(world, wide, &q) : ty_wide_occluded_base(world, wide, &q);
+}
+
 bool ty_world_intersect(const ty_world* world, const ty_ray* ray, ty_hit* hit)
 {
     struct RTCRayHit ray_hit = {.ray = make_ray(ray->origin, ray->t_min, ray->direction, ray->t_max)};
@@ -80,12 +115,17 @@ bool ty_world_intersect(const ty_world* world, const ty_ray* ray, ty_hit* hit)
     ray_hit.ray.time = ray->time;
     ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    ty_trace_context context = make_context(world, ray);
-    ty_embree_intersect(world->scene, &context.embree, top_filter(world, ray), &ray_hit);
+    if (world->wide)
+        ty_trace_wide_intersect(world, world->wide, ray, &ray_hit);
+    if (world->has_rest)
+    {
+        ty_trace_context context = make_context(world, ray);
+        ty_embree_intersect(world->scene, &context.embree, top_filter(world, ray), &ray_hit);
+    }
     if (ray_hit.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return false;
     find_object(world, ray_hit.hit.instID[0], &hit->object, &hit->instance);
-    // User geometry leaves the instance as the geometry; a prototype's only geometry is 0.
+    // Our own levels leave the instance as the geometry; a prototype's only geometry is 0.
     if (world->path == TY_TRACE_FAST)
         hit->instance = ray_hit.hit.geomID;
     hit->triangle = ray_hit.hit.primID;
@@ -101,6 +141,10 @@ bool ty_world_occluded(const ty_world* world, const ty_ray* ray)
     struct RTCRay r = make_ray(ray->origin, ray->t_min, ray->direction, ray->t_max);
     r.mask = ray->mask;
     r.time = ray->time;
+    if (world->wide && ty_trace_wide_occluded(world, world->wide, ray, &r))
+        return true;
+    if (!world->has_rest)
+        return false;
     ty_trace_context context = make_context(world, ray);
     ty_embree_occluded(world->scene, &context.embree, top_filter(world, ray), &r);
     return r.tfar < 0.0f;
@@ -130,10 +174,34 @@ static void fill_hit(const struct RTCRayHit* ray_hit, uint32_t object, uint32_t 
 bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_t instance, float time, ty_vec3 origin,
                                  ty_vec3 direction, float t_max, ty_hit* hit)
 {
-    ty_affine to_local = ty_world_to_local(world, object, instance, time);
+    const ty_trace_object* o = &world->objects[object];
+    uint32_t prototype = ty_trace_prototype_of(o, instance);
+    ty_affine map;
+    if (o->step_count > 1)
+    {
+        ty_affine outer = ty_trace_map_at(o->steps, o->step_count, time);
+        if (!ty_affine_invert(&outer, &map))
+            return false;
+        origin = ty_map_point(&map, origin);
+        direction = ty_map_vector(&map, direction);
+    }
+    // Where the wide level holds the instance, by way of the sphere as there: the same bits.
+    if (world->path == TY_TRACE_FAST && o->aggregate)
+    {
+        const ty_affine* back = &world->prototypes[prototype].from_sphere;
+        if (!ty_trace_sphere_map(world, o, instance, &map))
+            return false;
+        origin = ty_map_point(back, ty_map_point(&map, origin));
+        direction = ty_map_vector(back, ty_map_vector(&map, direction));
+    }
+    else if (o->step_count == 1)
+    {
+        map = ty_world_to_local(world, object, instance, time);
+        origin = ty_map_point(&map, origin);
+        direction = ty_map_vector(&map, direction);
+    }
     struct RTCRayHit ray_hit;
-    if (!intersect_mesh(world, ty_world_prototype(world, object, instance), ty_map_point(&to_local, origin), 0.0f,
-                        ty_map_vector(&to_local, direction), t_max, &ray_hit))
+    if (!intersect_mesh(world, prototype, origin, 0.0f, direction, t_max, &ray_hit))
         return false;
     fill_hit(&ray_hit, object, instance, time, hit);
     return true;
@@ -146,73 +214,6 @@ bool ty_world_intersect_prototype(const ty_world* world, uint32_t prototype, ty_
     if (!intersect_mesh(world, prototype, origin, 0.0f, direction, t_max, &ray_hit))
         return false;
     fill_hit(&ray_hit, TY_NONE, TY_NONE, 0.0f, hit);
-    return true;
-}
-
-// --- closest point ---
-
-typedef struct closest_query
-{
-    const ty_mesh* mesh;
-    ty_vec3 p;
-    ty_closest best;
-} closest_query;
-
-// Closest point of a triangle as barycentric weights u, v of b and c (Ericson 2004, Real-Time Collision
-// Detection, 5.1.5).
-static ty_vec2 closest_on_triangle(ty_vec3 p, ty_vec3 a, ty_vec3 b, ty_vec3 c)
-{
-    ty_vec3 ab = ty_sub(b, a), ac = ty_sub(c, a), ap = ty_sub(p, a), bp = ty_sub(p, b), cp = ty_sub(p, c);
-    float d1 = ty_dot(ab, ap), d2 = ty_dot(ac, ap), d3 = ty_dot(ab, bp), d4 = ty_dot(ac, bp);
-    float d5 = ty_dot(ab, cp), d6 = ty_dot(ac, cp);
-    if (d1 <= 0.0f && d2 <= 0.0f)
-        return (ty_vec2){0.0f, 0.0f};
-    if (d3 >= 0.0f && d4 <= d3)
-        return (ty_vec2){1.0f, 0.0f};
-    if (d6 >= 0.0f && d5 <= d6)
-        return (ty_vec2){0.0f, 1.0f};
-    float vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-    if (vc <= 0.0f && d1 >= 0.0f && d3 <= 0.0f)
-        return (ty_vec2){d1 / (d1 - d3), 0.0f};
-    if (vb <= 0.0f && d2 >= 0.0f && d6 <= 0.0f)
-        return (ty_vec2){0.0f, d2 / (d2 - d6)};
-    if (va <= 0.0f && d4 >= d3 && d5 >= d6)
-    {
-        float w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return (ty_vec2){1.0f - w, w};
-    }
-    float inverse = 1.0f / (va + vb + vc);
-    return (ty_vec2){vb * inverse, vc * inverse};
-}
-
-static bool try_triangle(struct RTCPointQueryFunctionArguments* args)
-{
-    closest_query* query = args->userPtr;
-    const ty_mesh* mesh = query->mesh;
-    const uint32_t* v = mesh->triangles[args->primID];
-    ty_vec3 a = mesh->positions[v[0]], b = mesh->positions[v[1]], c = mesh->positions[v[2]];
-    ty_vec2 w = closest_on_triangle(query->p, a, b, c);
-    ty_vec3 at = ty_mad(ty_mad(a, ty_sub(b, a), w.x), ty_sub(c, a), w.y);
-    float distance = ty_length(ty_sub(at, query->p));
-    if (!(distance < query->best.distance))
-        return false;
-    query->best = (ty_closest){at, distance, args->primID, w.x, w.y};
-    args->query->radius = distance;
-    return true;
-}
-
-bool ty_world_closest(const ty_world* world, uint32_t prototype, ty_vec3 p, float max_distance, ty_closest* out)
-{
-    closest_query query = {.mesh = world->prototypes[prototype].mesh, .p = p};
-    query.best.distance = max_distance;
-    query.best.triangle = TY_NONE;
-    struct RTCPointQuery point = {p.x, p.y, p.z, 0.0f, max_distance};
-    struct RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    rtcPointQuery(world->prototypes[prototype].scene, &point, &context, try_triangle, &query);
-    if (query.best.triangle == TY_NONE)
-        return false;
-    *out = query.best;
     return true;
 }
 

@@ -45,15 +45,31 @@ static ty_affine cofactors(const ty_affine* m)
     return (ty_affine){ty_mul(c.x, scale), ty_mul(c.y, scale), ty_mul(c.z, scale), {0, 0, 0}};
 }
 
+// The horizon of a triangle under the inverse transpose m of its map. In the prototype's space a direction w has
+// elevation n.(m^T w) / |m^T w|; the length is at most the root of Gershgorin's bound of m m^T, exact for a similarity.
+static float horizon_at(const ty_trace_prototype* prototype, uint32_t triangle, const ty_affine* m, float normal_length)
+{
+    if (!prototype->horizons || prototype->horizons[triangle] == 255)
+        return 1.0f;
+    float xy = fabsf(ty_dot(m->x, m->y)), yz = fabsf(ty_dot(m->y, m->z)), zx = fabsf(ty_dot(m->z, m->x));
+    float stretch_sqr =
+        ty_max(ty_dot(m->x, m->x) + xy + zx, ty_max(ty_dot(m->y, m->y) + xy + yz, ty_dot(m->z, m->z) + yz + zx));
+    float sine = (float)prototype->horizons[triangle] * (1.0f / TY_HORIZON_STEPS);
+    return ty_min(sine * sqrtf(stretch_sqr) * 1.00001f / normal_length, 1.0f);
+}
+
 void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point* out)
 {
-    const ty_mesh* mesh = ty_world_mesh(world, hit->object, hit->instance);
+    const ty_trace_prototype* prototype = &world->prototypes[ty_world_prototype(world, hit->object, hit->instance)];
+    const ty_mesh* mesh = prototype->mesh;
     ty_affine to_world = ty_world_to_world(world, hit->object, hit->instance, hit->time);
     corners c = corners_of(mesh, hit->triangle, hit->u, hit->v);
     ty_vec3 p0 = mesh->positions[c.v[0]];
     ty_vec3 e1 = ty_sub(mesh->positions[c.v[1]], p0), e2 = ty_sub(mesh->positions[c.v[2]], p0);
     ty_affine m = cofactors(&to_world);
-    ty_vec3 ng = ty_normalize(ty_map_vector(&m, ty_normalize(ty_cross(ty_normalize(e1), ty_normalize(e2)))));
+    ty_vec3 mapped = ty_map_vector(&m, ty_normalize(ty_cross(ty_normalize(e1), ty_normalize(e2))));
+    float length = ty_length(mapped);
+    ty_vec3 ng = length > 0.0f ? ty_mul(mapped, 1.0f / length) : mapped;
     ty_vec3 ns = ty_normalize(ty_map_vector(&m, ty_normalize(blend3(&c, mesh->normals))));
     float side = ty_dot(ns, ng);
     if (side < 0.0f)
@@ -69,7 +85,8 @@ void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point
                               .triangle = hit->triangle,
                               .u = hit->u,
                               .v = hit->v,
-                              .time = hit->time};
+                              .time = hit->time,
+                              .horizon = horizon_at(prototype, hit->triangle, &m, length)};
     if (mesh->uvs)
     {
         ty_vec2 a = mesh->uvs[c.v[0]], b = mesh->uvs[c.v[1]], d = mesh->uvs[c.v[2]];

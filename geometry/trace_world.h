@@ -5,16 +5,19 @@
 #include <stdatomic.h>
 #include <tsuya/geometry/trace.h>
 
+typedef struct ty_trace_wide ty_trace_wide;
+
 typedef struct ty_trace_prototype
 {
     const ty_mesh* mesh; // borrowed; NULL = a free slot
-    RTCScene scene;
+    RTCScene scene;      // the mesh in its own space
     ty_mesh_topology topology;
-    ty_bounds bounds;
-    ty_affine to_sphere;   // carries the bounding ellipsoid to the unit sphere
+    ty_bounds bounds;      // in its own space
+    ty_affine to_sphere;   // carries the bounding ellipsoid to the unit sphere, once the wide level holds it
     ty_affine from_sphere; // its inverse
-    float sphere_scale;    // largest absolute row sum of to_sphere's linear part: bounds how it magnifies an error
     bool has_ellipsoid;
+    uint8_t* horizons;      // by triangle, in TY_HORIZON_STEPS; 255 = none; owned; NULL = not known
+    float inner_radius_sqr; // a ball about the sphere's centre that lies inside the closed surface; 0 = none
 } ty_trace_prototype;
 
 typedef struct ty_trace_object
@@ -28,15 +31,17 @@ typedef struct ty_trace_object
     int step_count;                // 1 = at rest
     bool closed_subsurface;
     uint32_t mask;
-    ty_affine* to_local; // fast path: by instance, from the object's space where it moves, else from the world's; owned
-    RTCScene scene;      // a moving aggregate's instances in its own space
+    ty_trace_wide* wide; // a moving aggregate's instances in its own space; owned
 } ty_trace_object;
 
 struct ty_world
 {
     char* isa; // kernels in use, owned
     RTCDevice device;
-    RTCScene scene; // NULL before commit
+    RTCScene scene;      // NULL before commit; fast path: what is not in `wide`
+    ty_trace_wide* wide; // fast path: the instances at rest; NULL = none
+    bool has_rest;       // fast path: the scene is not empty
+    bool use_avx512;
     ty_trace_path path;
     bool has_subsurface; // some object honours TY_RAY_FRONT_ONLY
 
@@ -85,19 +90,45 @@ ty_affine ty_trace_map_at(const ty_affine* steps, int count, float time);
 // Smallest ellipsoid about the mesh's vertices (within a few percent of the least volume): fills to_sphere and
 // from_sphere.
 void ty_trace_fit_ellipsoid(ty_trace_prototype* prototype);
+// The largest ball about the sphere's centre inside the closed mesh.
+void ty_trace_fit_inner(const ty_world* world, uint32_t prototype);
 
-// --- trace_user.c ---
-// The object's instances as one user geometry. NULL when Embree refuses.
-RTCGeometry ty_trace_create_user_geometry(const ty_world* world, ty_trace_object* object);
+// --- trace_wide_build.c ---
+// The wide level over the instances of these objects, none of which moves (or of one that does, in its own space);
+// NULL and TY_OK without any. Owned by the caller.
+TY_CHECKED ty_status ty_trace_wide_create(ty_world* world, const uint32_t* objects, uint32_t object_count,
+                                          ty_trace_wide** out, ty_error* error);
+void ty_trace_wide_destroy(ty_trace_wide* wide); // NULL is allowed
+uint64_t ty_trace_wide_memory(const ty_trace_wide* wide);
+// Where an instance at rest stands in the world; for a moving object, in the object's space.
+ty_affine ty_trace_placed(const ty_trace_object* object, uint32_t instance);
+// From there to the prototype's sphere. False = singular.
+bool ty_trace_sphere_map(const ty_world* world, const ty_trace_object* object, uint32_t instance, ty_affine* out);
+
+// --- trace_horizon.c ---
+#define TY_HORIZON_STEPS 1000.0f
+// Sine of the elevation over each triangle's plane above which the mesh is not to be seen from there. Quadratic in the
+// triangles; not done for large meshes.
+void ty_trace_find_horizons(ty_trace_prototype* prototype);
+
+// --- trace_closest.c ---
+// Barycentric weights of b and c.
+ty_vec2 ty_trace_closest_on_triangle(ty_vec3 p, ty_vec3 a, ty_vec3 b, ty_vec3 c);
 
 // --- trace_moving.c ---
 // A moving object as a user geometry of one primitive. NULL when Embree refuses.
-RTCGeometry ty_trace_create_moving_geometry(ty_world* world, ty_trace_object* object);
+RTCGeometry ty_trace_create_moving_geometry(const ty_world* world, ty_trace_object* object);
 // Box of the object at a step.
 ty_bounds ty_trace_step_bounds(const ty_trace_object* object, int step);
 
 // --- trace_query.c ---
 // Rejects hits that the ray of a ty_trace_context passes through.
 void ty_trace_filter(const struct RTCFilterFunctionNArguments* args);
+// Through the wide level: the nearest hit before ray_hit->ray.tfar, left there as Embree leaves one of a user geometry,
+// with the instance as geomID. Origin and direction are ray_hit's, all else is the ray's.
+void ty_trace_wide_intersect(const ty_world* world, const ty_trace_wide* wide, const ty_ray* ray,
+                             struct RTCRayHit* ray_hit);
+bool ty_trace_wide_occluded(const ty_world* world, const ty_trace_wide* wide, const ty_ray* ray,
+                            const struct RTCRay* embree_ray);
 // The filter is asked only where it can reject something.
 RTCFilterFunctionN ty_trace_needed_filter(const ty_trace_object* object, const ty_ray* ray, uint32_t instance);

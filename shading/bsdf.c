@@ -102,7 +102,8 @@ void ty_bsdf_spawn(const ty_bsdf* bsdf, ty_vec3 wi, float u, ty_ray* ray)
     bool below = ty_dot(wi, bsdf->frame.n) < 0.0f;
     // What leaves a convex body on its outer side cannot meet it again, the facets of its mesh apart.
     bool outwards = bsdf->kind == TY_BSDF_CDRF_LOCAL || ty_dot(wi, p->ns) > 0.0f;
-    if (bsdf->convex && outwards)
+    // From elsewhere, what leaves above the horizon of its triangle cannot either.
+    if ((bsdf->convex && outwards) || ty_dot(wi, p->ng) > p->horizon)
     {
         ray->skip_object = p->object;
         ray->skip_instance = p->instance;

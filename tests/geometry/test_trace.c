@@ -6,6 +6,7 @@
 
 #include <cmocka.h>
 
+#include "../../geometry/trace_world.h"
 #include "trace_meshes.h"
 #include <string.h>
 
@@ -360,6 +361,76 @@ static void fast_path_cuts_nothing(void** state)
     ty_aggregate_destroy(heap);
 }
 
+// The kernels of every width give the same bits.
+static void widths_are_one(void** state)
+{
+    stage* s = *state;
+    ty_world* world = s->world[TY_TRACE_FAST];
+    if (!world->use_avx512)
+        skip();
+    ty_rng rng = ty_rng_make((ty_seed){14}, 0, 0);
+    for (int i = 0; i < RAYS; i++)
+    {
+        ty_ray ray = random_ray(&rng, i);
+        ty_hit hit[2];
+        bool found[2], occluded[2];
+        memset(hit, 0, sizeof hit);
+        for (int wide = 0; wide < 2; wide++)
+        {
+            world->use_avx512 = wide;
+            found[wide] = ty_world_intersect(world, &ray, &hit[wide]);
+            occluded[wide] = ty_world_occluded(world, &ray);
+        }
+        assert_int_equal(found[0], found[1]);
+        assert_int_equal(occluded[0], occluded[1]);
+        assert_memory_equal(&hit[0], &hit[1], sizeof hit[0]);
+    }
+}
+
+// A ray that leaves above the horizon of its triangle never meets its instance again, whatever the map; and the horizon
+// says something of convex bodies, of the outer side of tori, and nothing where a torus looks at itself.
+static void horizons_hold(void** state)
+{
+    stage* s = *state;
+    const ty_world *fast = s->world[TY_TRACE_FAST], *world = s->world[TY_TRACE_REFERENCE];
+    ty_rng rng = ty_rng_make((ty_seed){15}, 0, 0);
+    int above[2] = {0}, below[2] = {0}, none[2] = {0};
+    for (int i = 0; i < RAYS; i++)
+    {
+        ty_ray ray = random_ray(&rng, i);
+        ty_hit hit, again;
+        ty_surface_point p;
+        if (!ty_world_intersect(fast, &ray, &hit) || hit.object == 0 || hit.object == 3)
+            continue;
+        ty_world_surface(fast, &hit, &p);
+        int torus = hit.instance % 2;
+        none[torus] += p.horizon >= 1.0f;
+        for (int k = 0; k < 20; k++)
+        {
+            ty_vec3 w = random_direction(&rng);
+            // Just above the horizon is where it would show.
+            if (k % 2 && p.horizon < 0.9f)
+            {
+                ty_vec3 flat = ty_normalize(ty_mad(w, p.ng, -ty_dot(w, p.ng)));
+                float sine = p.horizon + 0.02f * ty_rng_float(&rng) + 1e-5f;
+                w = ty_add(ty_mul(flat, sqrtf(1.0f - sine * sine)), ty_mul(p.ng, sine));
+            }
+            if (!(ty_dot(w, p.ng) > p.horizon))
+            {
+                below[torus]++;
+                continue;
+            }
+            above[torus]++;
+            assert_false(ty_world_intersect_instance(world, hit.object, hit.instance, 0.0f, ty_offset_origin(&p, p.ng),
+                                                     w, TY_FLOAT_MAX, &again));
+        }
+    }
+    print_message("  balls: %d rays above, %d below; tori: %d, %d; of these %d points without\n", above[0], below[0],
+                  above[1], below[1], none[1]);
+    assert_true(above[0] > 5 * below[0] / 6 && none[0] == 0);
+    assert_true(above[1] > below[1] / 4 && none[1] > 100);
+}
+
 static void numbering(void** state)
 {
     stage* s = *state;
@@ -419,6 +490,8 @@ int main(void)
         cmocka_unit_test(two_builds_are_one),
         cmocka_unit_test(far_from_the_origin),
         cmocka_unit_test(fast_path_cuts_nothing),
+        cmocka_unit_test(widths_are_one),
+        cmocka_unit_test(horizons_hold),
         cmocka_unit_test(numbering),
         cmocka_unit_test(bad_input),
     };

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The wide top level over instances at rest: boxes in nodes of sixteen, instances in leaves of sixteen as maps to the
+// unit sphere of their prototypes' bounding ellipsoids.
+#pragma once
+#include "trace_world.h"
+#include <tsuya/base/simd.h>
+
+#define TY_WIDE_LEAF 0x80000000u // in a child: the rest is the index of a leaf
+#define TY_WIDE_STACK 1088       // 15 waiting children a level; the builder goes at most 70 levels deep
+
+typedef struct ty_wide_node
+{
+    _Alignas(64) float plane[6][TY_LANES]; // low x, y, z, high x, y, z; no child: low above high
+    uint32_t child[TY_LANES];
+} ty_wide_node;
+
+typedef struct ty_wide_leaf
+{
+    _Alignas(64) float map[12][TY_LANES]; // by row: the world's x, y, z and 1 to the sphere's x, then to y, then to z
+    uint32_t instance[TY_LANES];          // of the world's numbering; TY_NONE = none
+    uint32_t prototype[TY_LANES];
+} ty_wide_leaf;
+
+struct ty_trace_wide
+{
+    ty_wide_node* nodes;
+    ty_wide_leaf* leaves;
+    uint32_t root; // as a child
+    uint32_t node_count, leaf_count;
+    uint32_t common_mask; // bits that every object has: a ray with one of them meets all
+    bool has_subsurface;
+};
+
+// One ray on its way through: in the space of the wide level, which is not the world's for moving objects.
+typedef struct ty_wide_query
+{
+    ty_vec3 origin, direction;
+    float t_min, t_max; // t_max shrinks to the nearest hit
+    const ty_ray* ray;  // flags, mask and skips
+    uint32_t skip;      // the world's number of the ray's instance to skip, or TY_NONE
+    float u, v;         // of the hit
+    uint32_t triangle, instance;
+} ty_wide_query;
+
+// The kernels: same bits, other width.
+bool ty_wide_intersect_base(const ty_world* world, const ty_trace_wide* wide, ty_wide_query* query);
+bool ty_wide_occluded_base(const ty_world* world, const ty_trace_wide* wide, const ty_wide_query* query);
+bool ty_wide_intersect_avx512(const ty_world* world, const ty_trace_wide* wide, ty_wide_query* query);
+bool ty_wide_occluded_avx512(const ty_world* world, const ty_trace_wide* wide, const ty_wide_query* query);
