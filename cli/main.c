@@ -13,6 +13,7 @@ static const ty_command* const commands[] = {
     &ty_command_develop, //
     &ty_command_merge,   //
     &ty_command_compare, //
+    &ty_command_regress, //
     &ty_command_check,   //
     &ty_command_info,    //
     &ty_command_params,  //

@@ -6,6 +6,7 @@
 #include <tsuya/base/file.h>
 #include <tsuya/base/memory.h>
 #include <tsuya/image/color.h>
+#include <tsuya/image/half.h>
 
 // The space of a scanline EXR: what its chromaticities say, else linear Rec.709 as the format has it.
 static void name_space(ty_picture* picture)
@@ -64,6 +65,21 @@ ty_status ty_picture_read(const char* path, ty_picture* out, ty_error* error)
         return TY_OK;
     }
     return read_other(path, out, error); // says what is wrong with an EXR too
+}
+
+void ty_picture_from_render(ty_exr* exr, const char* path, ty_picture* out)
+{
+    *out = (ty_picture){.path = path, .exr = exr};
+    int64_t count = (int64_t)ty_exr_width(exr) * ty_exr_height(exr);
+    for (int c = 0; c < exr->channel_count; c++)
+    {
+        float* pixels = exr->channels[c].pixels;
+        for (int64_t i = 0; i < count && exr->channels[c].type == TY_EXR_HALF; i++)
+        {
+            pixels[i] = ty_half_to_float(ty_half_from_float(pixels[i]));
+        }
+    }
+    name_space(out);
 }
 
 void ty_picture_term(ty_picture* picture)

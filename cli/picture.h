@@ -13,6 +13,8 @@ typedef struct ty_picture
 } ty_picture;
 
 TY_CHECKED ty_status ty_picture_read(const char* path, ty_picture* out, ty_error* error);
+// A picture that was just rendered, with the values that its file would have; takes exr over.
+void ty_picture_from_render(ty_exr* exr, const char* path, ty_picture* out);
 void ty_picture_term(ty_picture* picture);
 
 enum
