@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Integrators for looking at things: what the camera sees first, as colour.
-#include "cone.h"
+#include "path.h"
 
 void ty_integrator_record(const ty_integrator* in, const ty_bsdf* bsdf, ty_film_sample* out)
 {
@@ -61,20 +61,35 @@ static ty_rgb shown(const ty_integrator* in, const ty_sampler* sampler, const ty
     return (ty_rgb){0};
 }
 
+// The material seen first, past what is more transparent than not. NULL = none.
+static const ty_material* find_shown(const ty_integrator* in, ty_ray* ray, ty_surface_point* point)
+{
+    const ty_scene* scene = in->scene;
+    ty_cone cone = ty_cone_begin(in, ray);
+    ty_hit hit;
+    for (int i = 0; i < TY_PATH_MAX_PASSED && ty_world_intersect(scene->world, ray, &hit); ++i)
+    {
+        ty_world_surface(scene->world, &hit, point);
+        ty_cone_arrive(&cone, ray->direction, hit.t, point);
+        const ty_material* material = ty_scene_material(scene, hit.object, hit.instance, hit.triangle);
+        ty_vec3 wo = ty_neg(ray->direction);
+        if (ty_rgb_max(ty_material_transparency(material, &scene->shading, point, wo).through) < 0.5f)
+            return material;
+        ty_path_pass(point, hit.t, ray);
+    }
+    return NULL;
+}
+
 void ty_debug_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray ray, ty_counters* counters,
                      ty_film_sample* out)
 {
     const ty_scene* scene = in->scene;
-    ty_hit hit;
-    if (!ty_world_intersect(scene->world, &ray, &hit))
-        return;
     ty_surface_point point;
     ty_bsdf bsdf;
-    ty_cone cone = ty_cone_begin(in, &ray);
-    ty_world_surface(scene->world, &hit, &point);
-    ty_cone_arrive(&cone, ray.direction, hit.t, &point);
-    ty_material_prepare(ty_scene_material(scene, hit.object, hit.instance, hit.triangle), &scene->shading, &point,
-                        ty_neg(ray.direction), &bsdf);
+    const ty_material* material = find_shown(in, &ray, &point);
+    if (!material)
+        return;
+    ty_material_prepare(material, &scene->shading, &point, ty_neg(ray.direction), &bsdf);
     counters->path_vertices++;
     out->covered = true;
     ty_integrator_record(in, &bsdf, out);

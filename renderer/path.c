@@ -22,6 +22,10 @@ static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sa
     p->beta = ty_rgb_mul(p->beta, sample->weight);
     if (!survives(&in->scene->render, p, &u))
         return false;
+    p->indirect = p->soft;
+    p->soft = p->soft || !sample->delta;
+    if (p->at_boundary && sample->transmitted)
+        ty_media_cross(&p->media, &p->body, p->entering);
     ty_bsdf_spawn(bsdf, sample->wi, u, &p->ray);
     ty_cone_scatter(in, bsdf, sample, &p->cone);
     p->ray.mask = sample->transmitted ? TY_MASK_TRANSMISSION : sample->delta ? TY_MASK_GLOSSY : TY_MASK_DIFFUSE;
@@ -35,7 +39,7 @@ static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sa
 static bool scatter(const ty_integrator* in, const ty_bsdf* bsdf, const float u[8], ty_path* p, ty_film_sample* out,
                     ty_counters* counters)
 {
-    ty_path_direct_light(in, bsdf, u + 4, p->beta, out, counters);
+    ty_path_direct_light(in, p, bsdf, u + 4, p->beta, out, counters);
     ty_bsdf_sample sample;
     return ty_bsdf_sample_wi(bsdf, u[2], (ty_vec2){u[0], u[1]}, &sample) && go_on(in, bsdf, &sample, u[3], p);
 }
@@ -51,9 +55,9 @@ static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_
     ty_sampler_8d(sampler, TY_GROUP_COAT, c);
     ty_bsdf_sample glint;
     bool shines = ty_bsdf_sample_wi(&coat, c[2], (ty_vec2){c[0], c[1]}, &glint);
-    ty_path_direct_light(in, &coat, c + 4, p->beta, out, counters);
+    ty_path_direct_light(in, p, &coat, c + 4, p->beta, out, counters);
     if (shines)
-        ty_path_light_along(in, &coat, &glint, c[3], p->beta, out, counters);
+        ty_path_light_along(in, p, &coat, &glint, c[3], p->beta, out, counters);
 
     ty_rgb weight;
     ty_rng extra = ty_sampler_extra(sampler, p->bounce);
@@ -63,7 +67,7 @@ static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_
     bool lit = ty_bsdf_take_interior(body, &in->scene->shading, inside, &extra, &weight);
     counters->interior_rays++;
     if (lit)
-        ty_path_direct_light(in, body, u + 4, ty_rgb_mul(p->beta, weight), out, counters);
+        ty_path_direct_light(in, p, body, u + 4, ty_rgb_mul(p->beta, weight), out, counters);
 
     if (pair[2] < chance)
     {
@@ -100,52 +104,135 @@ static bool advance(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf*
     return scatter(in, bsdf, u, p, out, counters);
 }
 
-// Beer's law over a way through the medium behind a surface.
-static void absorb(ty_path* p, ty_rgb absorption, float distance)
+// Whether the ray goes straight through, by chance in proportion. Weighs beta for what happened.
+static bool goes_through(const ty_integrator* in, const ty_sampler* sampler, const ty_material* material,
+                         const ty_surface_point* point, ty_path* p)
 {
-    if (ty_rgb_is_black(absorption))
+    float u[4];
+    ty_transparency t = ty_material_transparency(material, &in->scene->shading, point, ty_neg(p->ray.direction));
+    float chance = ty_min(ty_rgb_max(t.through), 1.0f);
+    ty_sampler_4d(sampler, ty_group_pass(p->bounce, p->passed), u);
+    bool through = u[p->passed % 4] < chance;
+    if (through)
+        p->beta = ty_rgb_mul(p->beta, ty_rgb_scale(t.through, 1.0f / chance));
+    else
+        p->beta = ty_rgb_scale(p->beta, t.opacity / (1.0f - chance));
+    return through;
+}
+
+// Whether the surface of a clear body is a boundary here; sets what lies on both sides.
+static bool meets_boundary(const ty_integrator* in, const ty_material* material, const ty_surface_point* point,
+                           ty_path* p, float* outside)
+{
+    p->body = ty_medium_make(material, &in->scene->shading, point);
+    p->entering = ty_dot(p->ray.direction, point->ng) < 0.0f;
+    p->at_boundary = ty_media_is_boundary(&p->media, &p->body, p->entering, outside);
+    ty_media beyond = p->media;
+    ty_media_cross(&beyond, &p->body, p->entering);
+    if (!p->at_boundary)
+    {
+        p->media = beyond;
+        // No shadow ray comes through here, so that what is met beyond is met by this ray alone.
+        p->view.full = true;
+        p->view.done = false;
+        return false;
+    }
+    const ty_medium* top = ty_media_top(&beyond);
+    p->absorption[1] = top ? top->absorption : ty_rgb_grey(0.0f);
+    return true;
+}
+
+// Beer's law over the way to the surface, and the media on both sides of it.
+static void arrive(const ty_integrator* in, float distance, ty_path* p)
+{
+    p->at_boundary = false;
+    if (!in->has_media)
         return;
-    p->beta = ty_rgb_mul(p->beta, (ty_rgb){ty_exp(-absorption.r * distance), ty_exp(-absorption.g * distance),
-                                           ty_exp(-absorption.b * distance)});
+    const ty_medium* top = ty_media_top(&p->media);
+    p->absorption[0] = p->absorption[1] = top ? top->absorption : ty_rgb_grey(0.0f);
+    p->beta = ty_rgb_mul(p->beta, ty_path_absorbed(p->absorption[0], distance));
+}
+
+// Lights along the ray up to t.
+static void meet_lights(const ty_integrator* in, float t, const ty_path* p, ty_film_sample* out)
+{
+    ty_film_sample limited = {0};
+    bool limit = p->indirect && in->scene->render.indirect_clamp > 0.0f;
+    bool covered = ty_light_set_along(&in->lights, &p->ray, t, &p->view, p->beta, limit ? &limited : out);
+    if (limit)
+        ty_path_add_limited(in, &limited, out);
+    out->covered = out->covered || (p->bounce == 0 && covered);
+}
+
+// The surface where the path scatters next, past all it goes straight through. False = it left the scene.
+static bool find_surface(const ty_integrator* in, const ty_sampler* sampler, ty_path* p, ty_bsdf* bsdf,
+                         ty_counters* counters, ty_film_sample* out)
+{
+    const ty_scene* scene = in->scene;
+    for (; p->passed < TY_PATH_MAX_PASSED; ++p->passed)
+    {
+        ty_hit hit;
+        ty_surface_point point;
+        float outside = 1.0f;
+        bool found = ty_world_intersect(scene->world, &p->ray, &hit);
+        if (!p->view.done)
+            meet_lights(in, found ? hit.t : TY_FLOAT_MAX, p, out);
+        if (!found)
+            return false;
+        ty_world_surface(scene->world, &hit, &point);
+        ty_cone_arrive(&p->cone, p->ray.direction, hit.t, &point);
+        const ty_material* material = ty_scene_material(scene, hit.object, hit.instance, hit.triangle);
+        unsigned traits = ty_material_traits(material);
+        arrive(in, hit.t, p);
+        if (((traits & TY_TRAIT_TRANSPARENT) && goes_through(in, sampler, material, &point, p)) ||
+            ((traits & TY_TRAIT_MEDIUM) && !meets_boundary(in, material, &point, p, &outside)))
+        {
+            ty_path_pass(&point, hit.t, &p->ray);
+            counters->path_rays++;
+            continue;
+        }
+        ty_material_prepare_within(material, &scene->shading, &point, ty_neg(p->ray.direction), outside, bsdf);
+        out->covered = true;
+        counters->path_vertices++;
+        return true;
+    }
+    return false;
+}
+
+static void begin(const ty_integrator* in, const ty_ray* ray, ty_path* p)
+{
+    p->ray = *ray;
+    p->cone = ty_cone_begin(in, ray);
+    p->beta = ty_rgb_grey(1.0f);
+    p->view = (ty_light_view){.full = true, .seen = TY_MASK_CAMERA};
+    p->bounce = p->passed = 0;
+    p->soft = p->indirect = p->at_boundary = false;
+    p->absorption[0] = p->absorption[1] = ty_rgb_grey(0.0f);
+    p->media.count = 0;
+    if (in->media.count > 0)
+        p->media = in->media;
 }
 
 static void add_emission(const ty_integrator* in, const ty_bsdf* bsdf, const ty_path* p, ty_film_sample* out)
 {
     float weight = ty_light_set_weight(&in->lights, &bsdf->point, &p->view, p->ray.direction);
-    ty_film_sample_add(out, ty_light_set_object_group(&in->lights, bsdf->point.object),
-                       ty_rgb_scale(ty_rgb_mul(p->beta, bsdf->emission), weight));
+    ty_path_add(in, p->indirect, ty_light_set_object_group(&in->lights, bsdf->point.object),
+                ty_rgb_scale(ty_rgb_mul(p->beta, bsdf->emission), weight), out);
 }
 
 void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray ray, ty_counters* counters,
                     ty_film_sample* out)
 {
-    const ty_scene* scene = in->scene;
-    ty_path p = {.ray = ray, .beta = {1.0f, 1.0f, 1.0f}, .view = {.full = true, .seen = TY_MASK_CAMERA}};
-    p.cone = ty_cone_begin(in, &ray);
-    for (;; p.bounce++)
+    ty_path p;
+    ty_bsdf bsdf;
+    begin(in, &ray, &p);
+    for (; find_surface(in, sampler, &p, &bsdf, counters, out); p.bounce++)
     {
-        ty_hit hit;
-        bool covered = false, found = ty_world_intersect(scene->world, &p.ray, &hit);
-        if (!p.view.done)
-            covered = ty_light_set_along(&in->lights, &p.ray, found ? hit.t : TY_FLOAT_MAX, &p.view, p.beta, out);
-        if (p.bounce == 0)
-            out->covered = found || covered;
-        if (!found)
-            return;
-        ty_surface_point point;
-        ty_bsdf bsdf;
-        ty_world_surface(scene->world, &hit, &point);
-        ty_cone_arrive(&p.cone, p.ray.direction, hit.t, &point);
-        ty_material_prepare(ty_scene_material(scene, hit.object, hit.instance, hit.triangle), &scene->shading, &point,
-                            ty_neg(p.ray.direction), &bsdf);
-        counters->path_vertices++;
-        if (!bsdf.entering)
-            absorb(&p, ty_bsdf_absorption(&bsdf), hit.t);
         if (!ty_rgb_is_black(bsdf.emission))
             add_emission(in, &bsdf, &p, out);
         if (p.bounce == 0)
             ty_integrator_record(in, &bsdf, out);
-        if (p.bounce == scene->render.max_depth || !advance(in, sampler, &bsdf, &p, out, counters))
+        if (p.bounce == in->scene->render.max_depth || !advance(in, sampler, &bsdf, &p, out, counters))
             return;
         counters->path_rays++;
     }

@@ -3,13 +3,23 @@
 #pragma once
 #include "cone.h"
 
+#define TY_PATH_MAX_PASSED 256 // surfaces that a ray goes straight through
+
 typedef struct ty_path
 {
     ty_ray ray;
     ty_rgb beta; // throughput
     ty_light_view view;
     ty_cone cone;
-    int bounce; // surfaces passed before the present one
+    int bounce;           // surfaces scattered at before the present one; those passed straight through do not count
+    int passed;           // straight through, all together
+    bool soft;            // scattered by something that is no mirror already
+    bool indirect;        // and once more: what the ray meets is indirect light
+    bool at_boundary;     // the present surface bounds a medium:
+    bool entering;        // the ray arrived from outside of it
+    ty_medium body;       // behind it
+    ty_rgb absorption[2]; // 1/m, of the media on wo's side of the present surface and beyond it
+    ty_media media;       // the ray is in; last, because paths in air leave it untouched
 } ty_path;
 
 // Where a surface gathers light, for choosing a light there.
@@ -17,10 +27,23 @@ ty_light_point ty_path_light_point(const ty_integrator* in, const ty_bsdf* bsdf)
 
 // One light sample at a surface, times beta to out. u: two for the light's surface, one to choose it, one for the ray's
 // start.
-void ty_path_direct_light(const ty_integrator* in, const ty_bsdf* bsdf, const float u[4], ty_rgb beta,
+void ty_path_direct_light(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const float u[4], ty_rgb beta,
                           ty_film_sample* out, ty_counters* counters);
 
 // What the sampled direction of a coat meets of the lights, the scene between, times beta to out. u: for the ray's
 // start.
-void ty_path_light_along(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, float u,
-                         ty_rgb beta, ty_film_sample* out, ty_counters* counters);
+void ty_path_light_along(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const ty_bsdf_sample* sample,
+                         float u, ty_rgb beta, ty_film_sample* out, ty_counters* counters);
+
+// Adds light found at the path's end; what is indirect can be limited, for less noise and a darker picture.
+void ty_path_add(const ty_integrator* in, bool indirect, int group, ty_rgb light, ty_film_sample* out);
+// The same of all that a ray met together.
+void ty_path_add_limited(const ty_integrator* in, const ty_film_sample* met, ty_film_sample* out);
+
+// --- path_media.c ---
+
+void ty_path_find_media(const ty_scene* scene, ty_vec3 p, ty_media* out); // closed clear bodies around a point
+ty_rgb ty_path_absorbed(ty_rgb absorption, float distance);               // Beer's law
+void ty_path_pass(const ty_surface_point* point, float t, ty_ray* ray);   // t: of the hit at point
+// What arrives along a shadow ray past all that stands in its way.
+ty_rgb ty_path_transmittance(const ty_integrator* in, ty_ray ray, ty_counters* counters);

@@ -5,8 +5,9 @@
 // Light from below matters to what transmits or is lit through its body.
 static ty_vec3 lit_side(const ty_bsdf* bsdf)
 {
-    bool one_side = bsdf->kind == TY_BSDF_CDRF_EXIT || bsdf->kind == TY_BSDF_CDRF_COAT ||
-                    (bsdf->kind == TY_BSDF_SURFACE && !(bsdf->transmission_weight > 0.0f));
+    bool one_side =
+        bsdf->kind == TY_BSDF_CDRF_EXIT || bsdf->kind == TY_BSDF_CDRF_COAT ||
+        (bsdf->kind == TY_BSDF_SURFACE && !(bsdf->transmission_weight > 0.0f) && !bsdf->thin && !bsdf->bent);
     return one_side ? bsdf->frame.n : (ty_vec3){0};
 }
 
@@ -33,7 +34,24 @@ static float sample_weight(const ty_integrator* in, const ty_light_sample* light
     return ty_power_heuristic(light->pdf, pdf);
 }
 
-void ty_path_direct_light(const ty_integrator* in, const ty_bsdf* bsdf, const float u[4], ty_rgb beta,
+void ty_path_add(const ty_integrator* in, bool indirect, int group, ty_rgb light, ty_film_sample* out)
+{
+    float limit = in->scene->render.indirect_clamp, most = ty_rgb_max(light);
+    if (indirect && limit > 0.0f && most > limit)
+        light = ty_rgb_scale(light, limit / most);
+    ty_film_sample_add(out, group, light);
+}
+
+void ty_path_add_limited(const ty_integrator* in, const ty_film_sample* met, ty_film_sample* out)
+{
+    float limit = in->scene->render.indirect_clamp, most = ty_rgb_max(met->radiance);
+    float scale = most > limit ? limit / most : 1.0f;
+    out->radiance = ty_rgb_add(out->radiance, ty_rgb_scale(met->radiance, scale));
+    for (int i = 0; i < TY_LIGHT_GROUPS; ++i)
+        out->group[i] = ty_rgb_add(out->group[i], ty_rgb_scale(met->group[i], scale));
+}
+
+void ty_path_direct_light(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const float u[4], ty_rgb beta,
                           ty_film_sample* out, ty_counters* counters)
 {
     ty_light_sample light;
@@ -47,17 +65,33 @@ void ty_path_direct_light(const ty_integrator* in, const ty_bsdf* bsdf, const fl
         return;
     ty_ray shadow;
     ty_bsdf_spawn(bsdf, light.wi, u[3], &shadow);
-    shadow.mask = TY_MASK_SHADOW;
     if (light.distance < TY_FLOAT_MAX)
         shadow.t_max = light.distance * TY_LIGHT_REACH;
-    counters->shadow_rays += light.shadows;
-    if (light.shadows && ty_world_occluded(in->scene->world, &shadow))
+    if (light.shadows)
+        value = ty_rgb_mul(value, ty_path_transmittance(in, shadow, counters));
+    if (ty_rgb_is_black(value))
         return;
-    ty_film_sample_add(out, light.group, ty_rgb_scale(ty_rgb_mul(beta, value), weight));
+    bool beyond = (ty_dot(light.wi, bsdf->point.ng) > 0.0f) != bsdf->entering;
+    value = ty_rgb_mul(value, ty_path_absorbed(p->absorption[beyond], light.distance));
+    ty_path_add(in, p->soft, light.group, ty_rgb_scale(ty_rgb_mul(beta, value), weight), out);
 }
 
-void ty_path_light_along(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, float u,
-                         ty_rgb beta, ty_film_sample* out, ty_counters* counters)
+// The rest of beta beyond a surface that light goes straight through. False = it ends there.
+static bool look_through(const ty_scene* scene, const ty_hit* hit, ty_ray* ray, ty_rgb* beta)
+{
+    const ty_material* material = ty_scene_material(scene, hit->object, hit->instance, hit->triangle);
+    if (!(ty_material_traits(material) & TY_TRAIT_TRANSPARENT))
+        return false;
+    ty_surface_point point;
+    ty_world_surface(scene->world, hit, &point);
+    ty_vec3 wo = ty_neg(ray->direction);
+    *beta = ty_rgb_mul(*beta, ty_material_transparency(material, &scene->shading, &point, wo).through);
+    ty_path_pass(&point, hit->t, ray);
+    return !ty_rgb_is_black(*beta);
+}
+
+void ty_path_light_along(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const ty_bsdf_sample* sample,
+                         float u, ty_rgb beta, ty_film_sample* out, ty_counters* counters)
 {
     ty_light_view view = {
         .from = ty_path_light_point(in, bsdf), .pdf = sample->pdf, .full = sample->delta, .seen = TY_MASK_GLOSSY};
@@ -66,9 +100,17 @@ void ty_path_light_along(const ty_integrator* in, const ty_bsdf* bsdf, const ty_
     ray.mask = TY_MASK_GLOSSY;
     if (!ty_light_set_shines(&in->lights, &ray, &view))
         return;
-    ty_hit hit;
-    counters->path_rays++;
-    bool found = ty_world_intersect(in->scene->world, &ray, &hit);
-    (void)ty_light_set_along(&in->lights, &ray, found ? hit.t : TY_FLOAT_MAX, &view, ty_rgb_mul(beta, sample->weight),
-                             out);
+    ty_film_sample limited = {0}, *sum = p->soft && in->scene->render.indirect_clamp > 0.0f ? &limited : out;
+    beta = ty_rgb_mul(beta, sample->weight);
+    for (int i = 0; i < TY_PATH_MAX_PASSED; ++i)
+    {
+        ty_hit hit;
+        counters->path_rays++;
+        bool found = ty_world_intersect(in->scene->world, &ray, &hit);
+        (void)ty_light_set_along(&in->lights, &ray, found ? hit.t : TY_FLOAT_MAX, &view, beta, sum);
+        if (!found || !look_through(in->scene, &hit, &ray, &beta))
+            break;
+    }
+    if (sum == &limited)
+        ty_path_add_limited(in, &limited, out);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rendering: passes of rising length over tiles, each pixel written by one worker.
-#include "integrator.h"
+#include "path.h"
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -41,6 +41,14 @@ static void integrator_init(ty_integrator* in, const ty_scene* scene, const ty_f
     ty_pixel_filter_init(&in->filter, (ty_filter_kind)scene->film.filter, scene->film.filter_width);
     ty_light_set_init(&in->lights, scene, film->group_count > 0);
     ty_sobol_init(&in->sobol);
+    for (int i = 0; i < scene->material_count; ++i)
+    {
+        unsigned traits = ty_material_traits(scene->materials[i]);
+        in->has_transparent = in->has_transparent || (traits & TY_TRAIT_TRANSPARENT);
+        in->has_media = in->has_media || (traits & TY_TRAIT_MEDIUM);
+    }
+    if (in->has_media)
+        ty_path_find_media(scene, scene->camera.position, &in->media);
     in->first_instance = TY_ALLOC(uint32_t, scene->object_count);
     uint32_t next = 1;
     for (int i = 0; i < scene->object_count; ++i)

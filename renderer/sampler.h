@@ -33,6 +33,11 @@ ty_sampler ty_sampler_make(const ty_sobol* sobol, ty_seed seed, int x, int y, ui
 #define TY_GROUP_CAMERA 0u        // filter x, y, lens x, y
 #define TY_GROUP_TIME 0x30000000u // moment within the shutter, where anything moves
 #define TY_GROUP_COAT 0x40000000u // and the next one: direct light by the coat at the camera's vertex
+// Whether a ray goes straight through a surface; four numbers a group.
+static inline uint32_t ty_group_pass(int bounce, int passed)
+{
+    return 0x50000000u + (uint32_t)bounce + ((uint32_t)passed / 4u << 16);
+}
 static inline uint32_t ty_group_scatter(int bounce)
 {
     return 1u + 3u * (uint32_t)bounce; // this and the next one are fetched together

@@ -105,6 +105,7 @@ void ty_param_expected(const ty_param* row, ty_text* out)
             "a number, { texture, value, scale, offset, uv, mapping, channel } or { attribute, ... }",
         [TY_PARAM_COLOR_INPUT] =
             "a colour, { texture, value, scale, offset, uv, mapping, channel } or { attribute, ... }",
+        [TY_PARAM_VECTOR_INPUT] = "{ texture, value, scale, offset, uv, mapping } or { attribute, ... }",
         [TY_PARAM_GROUP] = "a mapping",
         [TY_PARAM_LIST] = "a list of mappings",
         [TY_PARAM_NAMES] = "a mapping of names to names",
@@ -120,7 +121,8 @@ void ty_param_expected(const ty_param* row, ty_text* out)
         return;
     ty_text range = {0};
     ty_param_range_text(row, &range);
-    bool is_long = row->type == TY_PARAM_RGB || row->type == TY_PARAM_SCALAR_INPUT || row->type == TY_PARAM_COLOR_INPUT;
+    bool is_long = row->type == TY_PARAM_RGB || row->type == TY_PARAM_SCALAR_INPUT ||
+                   row->type == TY_PARAM_COLOR_INPUT || row->type == TY_PARAM_VECTOR_INPUT;
     if (range.size > 0)
         ty_text_format(out, "%s%s", is_long ? ", values" : "", range.data);
     ty_text_term(&range);
@@ -142,6 +144,7 @@ const char* ty_param_type_name(ty_param_type type)
         [TY_PARAM_ENUM] = "choice",
         [TY_PARAM_SCALAR_INPUT] = "number input",
         [TY_PARAM_COLOR_INPUT] = "colour input",
+        [TY_PARAM_VECTOR_INPUT] = "vector input",
         [TY_PARAM_GROUP] = "mapping",
         [TY_PARAM_LIST] = "list",
         [TY_PARAM_NAMES] = "names",
@@ -195,6 +198,7 @@ void ty_param_value_text(const ty_param* row, const void* def, ty_text* out)
     case TY_PARAM_ENUM:
         ty_text_add(out, row->choices[*(const int*)field]);
         break;
+    case TY_PARAM_VECTOR_INPUT: // none unless written
     case TY_PARAM_GROUP:
     case TY_PARAM_LIST:
     case TY_PARAM_NAMES:

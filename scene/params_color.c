@@ -87,6 +87,13 @@ static bool read_input_value(ty_reader* reader, ty_node* node, const ty_param* r
     ty_node* value = ty_node_get(node, "value");
     if (value && row->type == TY_PARAM_COLOR_INPUT)
         return ty_param_read_rgb(reader, value, row, &out->value);
+    if (row->type == TY_PARAM_VECTOR_INPUT)
+    {
+        float v[3] = {1.0f, 1.0f, 1.0f};
+        bool good = !value || ty_param_read_numbers(reader, value, row, v, 3);
+        out->value = ty_rgb_make(v[0], v[1], v[2]);
+        return good;
+    }
     float number = (float)ty_unit_scale(row->unit); // 1 in the written unit
     bool good = !value || ty_param_read_number(reader, value, row, &number);
     out->value = ty_rgb_grey(number);
@@ -127,7 +134,7 @@ static bool read_input_source(ty_reader* reader, ty_node* node, const ty_param* 
         if (!ty_param_read_mapping(reader, node, out))
             return false;
         out->texture = text;
-        out->texture_index = reader->find_texture(reader->context, texture, row->type == TY_PARAM_SCALAR_INPUT,
+        out->texture_index = reader->find_texture(reader->context, texture, row->type != TY_PARAM_COLOR_INPUT,
                                                   out->mapping == TY_MAPPING_UV);
         return out->texture_index >= 0;
     }
@@ -147,6 +154,16 @@ bool ty_param_read_input(ty_reader* reader, ty_node* node, const ty_param* row, 
     bool is_color = row->type == TY_PARAM_COLOR_INPUT;
     if (is_color && (node->kind != TY_NODE_MAP || ty_node_find(node, "color") >= 0))
         return ty_param_read_rgb(reader, node, row, &out->value);
+    if (row->type == TY_PARAM_VECTOR_INPUT)
+    {
+        out->scale = 2.0f;
+        out->offset = -1.0f;
+    }
+    if (node->kind != TY_NODE_MAP && row->type == TY_PARAM_VECTOR_INPUT)
+    {
+        ty_param_report_type(reader, node, row);
+        return false;
+    }
     if (node->kind != TY_NODE_MAP)
     {
         float value = 0.0f;

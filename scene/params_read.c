@@ -245,6 +245,7 @@ bool ty_param_read(ty_reader* reader, ty_node* node, const ty_param* row, void* 
         return read_enum(reader, node, row, field);
     case TY_PARAM_SCALAR_INPUT:
     case TY_PARAM_COLOR_INPUT:
+    case TY_PARAM_VECTOR_INPUT:
         return ty_param_read_input(reader, node, row, field);
     case TY_PARAM_GROUP:
         return read_keys(reader, node, row->group, field, NULL);

@@ -58,7 +58,7 @@ static void add_input(ty_text* out, const ty_param* row)
 {
     if (row->type == TY_PARAM_COLOR_INPUT)
         add_color(out, row);
-    else
+    else if (row->type == TY_PARAM_SCALAR_INPUT)
         add_number(out, row, "number");
     static const char mapping[] =
         ", \"uv\": {\"type\": \"object\", \"properties\": {\"scale\": {}, \"offset\": {}, \"rotate\": {}}, "
@@ -68,9 +68,10 @@ static void add_input(ty_text* out, const ty_param* row)
     for (int i = 0; i < 2; ++i)
     {
         const char* source = i ? "attribute" : "texture";
+        ty_text_add(out, i || row->type != TY_PARAM_VECTOR_INPUT ? ", " : "");
         ty_text_format(
             out,
-            ", {\"type\": \"object\", \"properties\": {\"%s\": {\"type\": \"string\"}, \"value\": {}, \"scale\": "
+            "{\"type\": \"object\", \"properties\": {\"%s\": {\"type\": \"string\"}, \"value\": {}, \"scale\": "
             "{\"type\": \"number\"}, \"offset\": {\"type\": \"number\"}%s}, \"required\": [\"%s\"], "
             "\"additionalProperties\": false}",
             source, i ? "" : mapping, source);
@@ -128,6 +129,7 @@ static void add_type(ty_text* out, const ty_param* row)
         break;
     case TY_PARAM_SCALAR_INPUT:
     case TY_PARAM_COLOR_INPUT:
+    case TY_PARAM_VECTOR_INPUT:
         add_input(out, row);
         break;
     case TY_PARAM_GROUP:

@@ -81,6 +81,10 @@ static const ty_param render_rows[] = {
      "how light is found: by lights and surfaces together, or one alone, for comparison", false},
     {"texture_filter", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_render_def, texture_filter),
      "average textures over what a ray stands for; false = look them up at the point", false},
+    {"indirect_clamp", TY_PARAM_FLOAT, "", 0, MANY, NULL, NULL, offsetof(ty_render_def, indirect_clamp),
+     "most that one path may add after its second scattering, caustics included: less noise, but the picture loses "
+     "that light; 0 = no limit",
+     false},
     {"ao_distance", TY_PARAM_FLOAT, "m", 0, MANY, NULL, NULL, offsetof(ty_render_def, ao_distance),
      "reach of ambient occlusion", false},
     {"curvature_scale", TY_PARAM_FLOAT, "m", 0, MANY, NULL, NULL, offsetof(ty_render_def, curvature_scale),

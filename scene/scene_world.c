@@ -154,6 +154,15 @@ static ty_motion object_motion(const ty_object_entry* entry, const ty_placed_obj
     return (ty_motion){steps, motion.step_count};
 }
 
+// Of those that shadow rays stop at; opacity may change from frame to frame.
+static uint32_t object_mask(const ty_scene* scene, const ty_scene_object* object, uint32_t mask)
+{
+    for (uint32_t k = 0; k < ty_scene_material_count(object); ++k)
+        if (ty_material_traits(scene->materials[ty_scene_material_at(object, k)]) & TY_TRAIT_TRANSPARENT)
+            return (mask & ~(uint32_t)TY_MASK_SHADOW) | (mask & TY_MASK_SHADOW ? TY_MASK_SHADOW_TRANSPARENT : 0u);
+    return mask;
+}
+
 static ty_status add_object(ty_loader* loader, int index, ty_error* error)
 {
     ty_scene* scene = loader->scene;
@@ -163,17 +172,19 @@ static ty_status add_object(ty_loader* loader, int index, ty_error* error)
     if (!placed->flags_known)
         placed->flags = object_flags(loader, &scene->objects[index], placed);
     placed->flags_known = true;
+    ty_object_flags flags = placed->flags;
+    flags.mask = object_mask(scene, &scene->objects[index], flags.mask);
     uint32_t number = 0, prototype = 0;
     ty_status status = TY_OK;
     if (placed->aggregate)
     {
-        status = ty_world_add_aggregate(scene->world, placed->aggregate, motion, placed->flags, &number, error);
+        status = ty_world_add_aggregate(scene->world, placed->aggregate, motion, flags, &number, error);
     }
     else
     {
         status = ty_world_add_prototype(scene->world, placed->mesh, &prototype, error);
         if (status == TY_OK)
-            status = ty_world_add_object(scene->world, prototype, motion, placed->flags, &number, error);
+            status = ty_world_add_object(scene->world, prototype, motion, flags, &number, error);
     }
     TY_ASSERT(status != TY_OK || number == (uint32_t)index);
     return status;

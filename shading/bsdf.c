@@ -19,9 +19,8 @@ bool ty_bsdf_is_delta(const ty_bsdf* bsdf)
     return false;
 }
 
-ty_rgb ty_bsdf_eval(const ty_bsdf* bsdf, ty_vec3 wi_world, float* pdf)
+static ty_rgb eval_local(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf)
 {
-    ty_vec3 wo = ty_to_local(bsdf->frame, bsdf->wo), wi = ty_to_local(bsdf->frame, wi_world);
     *pdf = 0.0f;
     switch (bsdf->kind)
     {
@@ -37,6 +36,55 @@ ty_rgb ty_bsdf_eval(const ty_bsdf* bsdf, ty_vec3 wi_world, float* pdf)
         break;
     }
     return ty_rgb_grey(0.0f);
+}
+
+// A normal from a map makes lobes reach to the wrong side of the surface. What would go there is mirrored in the true
+// tangent plane, so that nothing leaks and nothing is lost: a direction is met as itself and as its mirror image.
+static ty_vec3 mirror_image(const ty_bsdf* bsdf, ty_vec3 w)
+{
+    return ty_mad(w, bsdf->point.ng, -2.0f * ty_dot(w, bsdf->point.ng));
+}
+
+static bool is_above(const ty_bsdf* bsdf, ty_vec3 w)
+{
+    return (ty_dot(w, bsdf->point.ng) > 0.0f) == bsdf->entering;
+}
+
+static ty_rgb eval_bent(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi_world, float* pdf)
+{
+    bool above = is_above(bsdf, wi_world);
+    ty_vec3 wi = ty_to_local(bsdf->frame, wi_world), image = ty_to_local(bsdf->frame, mirror_image(bsdf, wi_world));
+    float image_pdf = 0.0f;
+    ty_rgb f = {0};
+    *pdf = 0.0f;
+    if ((wi.z > 0.0f) == above)
+        f = eval_local(bsdf, wo, wi, pdf);
+    if ((image.z > 0.0f) == above)
+        f = ty_rgb_add(f, eval_local(bsdf, wo, image, &image_pdf));
+    *pdf += image_pdf;
+    return f;
+}
+
+ty_rgb ty_bsdf_eval(const ty_bsdf* bsdf, ty_vec3 wi_world, float* pdf)
+{
+    ty_vec3 wo = ty_to_local(bsdf->frame, bsdf->wo);
+    if (bsdf->bent)
+        return eval_bent(bsdf, wo, wi_world, pdf);
+    return eval_local(bsdf, wo, ty_to_local(bsdf->frame, wi_world), pdf);
+}
+
+// The direction that a lobe sent, on the side where it belongs, with the density of both ways to it.
+static bool straighten(const ty_bsdf* bsdf, ty_vec3 wo, ty_bsdf_sample* out)
+{
+    if (is_above(bsdf, out->wi) == out->transmitted)
+        out->wi = mirror_image(bsdf, out->wi);
+    if (out->delta)
+        return true;
+    ty_rgb f = eval_bent(bsdf, wo, out->wi, &out->pdf);
+    if (!(out->pdf > 0.0f))
+        return false;
+    out->weight = ty_rgb_scale(f, 1.0f / out->pdf);
+    return true;
 }
 
 bool ty_bsdf_sample_wi(const ty_bsdf* bsdf, float u_lobe, ty_vec2 u, ty_bsdf_sample* out)
@@ -62,17 +110,12 @@ bool ty_bsdf_sample_wi(const ty_bsdf* bsdf, float u_lobe, ty_vec2 u, ty_bsdf_sam
     }
     if (kept)
         out->wi = ty_normalize(ty_to_world(bsdf->frame, out->wi));
-    return kept;
+    return kept && (!bsdf->bent || straighten(bsdf, wo, out));
 }
 
 ty_rgb ty_bsdf_albedo(const ty_bsdf* bsdf)
 {
     return bsdf->kind == TY_BSDF_SURFACE ? ty_surface_albedo(bsdf) : ty_cdrf_albedo(bsdf);
-}
-
-ty_rgb ty_bsdf_absorption(const ty_bsdf* bsdf)
-{
-    return bsdf->absorption;
 }
 
 // Light of `local` that comes from below the horizon has passed through the object itself.

@@ -115,6 +115,7 @@ bool ty_bsdf_take_interior(ty_bsdf* b, const ty_shading_context* context, const 
     if (trace_interior(b, context, u, extra, &exit))
         b->point = exit;
     b->kind = TY_BSDF_CDRF_EXIT;
+    b->bent = false; // the map is the coat's
     b->frame = ty_frame_from_normal(b->point.ns);
     return !ty_rgb_is_black(*weight);
 }

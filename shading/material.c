@@ -2,6 +2,7 @@
 // Materials: creation from definitions, and the preparation of lobes at a point.
 #include "material_private.h"
 #include "microfacet.h"
+#include "surface_private.h"
 #include <tsuya/base/memory.h>
 #include <tsuya/shading/cdrf.h>
 
@@ -16,13 +17,19 @@ static bool is_zero(const ty_input* input)
     return ty_rgb_is_black(input->value);
 }
 
-static ty_albedo_table* make_table(const ty_input* weight, const ty_input* roughness, float eta_low, float eta_high)
+// The range of an input on which a table depends: one value, or all there are.
+static void table_range(const ty_input* input, float low, float high, float range[2])
+{
+    bool one = is_constant(input) && input->value.r >= low;
+    range[0] = one ? ty_min(input->value.r, high) : low;
+    range[1] = one ? range[0] : high;
+}
+
+static ty_albedo_table* make_table(const ty_input* weight, const float roughness[2], float eta_low, float eta_high)
 {
     if (is_zero(weight) || eta_high <= 1.0f)
         return NULL;
-    float r = ty_clamp(roughness->value.r, 0.0f, 1.0f);
-    bool constant = is_constant(roughness) && roughness->value.r >= 0.0f;
-    return ty_albedo_table_create(constant ? r : 0.0f, constant ? r : 1.0f, eta_low, eta_high);
+    return ty_albedo_table_create(roughness[0], roughness[1], eta_low, eta_high);
 }
 
 static ty_status check_range(const char* name, float value, float low, float high, ty_error* error)
@@ -33,47 +40,85 @@ static ty_status check_range(const char* name, float value, float low, float hig
                         (double)high);
 }
 
-// The range of an input on which a table depends: one value, or all there are.
-static void table_range(const ty_input* input, float low, float high, float range[2])
-{
-    float value = ty_clamp(input->value.r, low, high);
-    range[0] = is_constant(input) ? value : low;
-    range[1] = is_constant(input) ? value : high;
-}
-
-static void make_loss_tables(ty_material* m)
+static void make_surface_tables(ty_material* m)
 {
     const ty_surface_def* s = &m->surface;
-    float roughness[2], ior[2], weight[2];
+    float roughness[2], coat[2], ior[2], weight[2];
     table_range(&s->specular_roughness, 0.0f, 1.0f, roughness);
+    table_range(&s->coat_roughness, 0.0f, 1.0f, coat);
     table_range(&s->specular_ior, 1.0f, 3.0f, ior);
     table_range(&s->specular_weight, 0.0f, 1.0f, weight);
+    m->specular = make_table(&s->specular_weight, roughness, ior[0], ior[1]);
+    m->coat = make_table(&s->coat_weight, coat, s->coat_ior, s->coat_ior);
     if (roughness[1] < TY_SMOOTH_ROUGHNESS)
         return;
-    if (!is_zero(&s->base_metalness) && !is_zero(&s->specular_weight))
+    bool metal = !is_zero(&s->base_metalness) && !is_zero(&s->specular_weight),
+         clear = !is_zero(&s->transmission_weight);
+    if (metal || (clear && s->thin_walled))
         m->conductor = ty_loss_table_create_conductor(roughness[0], roughness[1]);
-    if (!is_zero(&s->transmission_weight))
+    if (clear && !s->thin_walled)
         m->dielectric = ty_loss_table_create_dielectric(roughness[0], roughness[1], ior[0], ior[1], weight[1]);
 }
 
-ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** out, ty_error* error)
+static bool has_map(const ty_input* normal, const ty_input* bump)
 {
-    *out = NULL;
+    return normal->texture_index >= 0 || normal->attribute_index >= 0 || bump->texture_index >= 0;
+}
+
+static ty_status check_maps(float strength, const ty_input* bump, ty_error* error)
+{
+    ty_status status = check_range("normal_strength", strength, 0.0f, TY_FLOAT_MAX, error);
+    if (status == TY_OK && bump->attribute_index >= 0)
+        status = ty_error_set(error, TY_BAD_INPUT, "bump: an attribute has no slope; use a texture");
+    return status;
+}
+
+// Constant values out of a scene file are in range already; those of programs need not be.
+static ty_status check_surface(const ty_surface_def* def, ty_error* error)
+{
     ty_status status = check_range("coat_ior", def->coat_ior, 1.0f, 3.0f, error);
     if (status == TY_OK)
         status = check_range("transmission_depth", def->transmission_depth, 0.0f, TY_FLOAT_MAX, error);
     if (status == TY_OK && is_constant(&def->specular_ior))
         status = check_range("specular_ior", def->specular_ior.value.r, 1.0f, 3.0f, error);
+    if (status == TY_OK && is_constant(&def->opacity))
+        status = check_range("opacity", def->opacity.value.r, 0.0f, 1.0f, error);
+    if (status == TY_OK && is_constant(&def->specular_roughness_anisotropy))
+        status =
+            check_range("specular_roughness_anisotropy", def->specular_roughness_anisotropy.value.r, 0.0f, 1.0f, error);
+    if (status == TY_OK)
+        status = check_range("subsurface_anisotropy", def->subsurface_anisotropy, -1.0f, 1.0f, error);
+    if (status == TY_OK)
+        status = check_maps(def->normal_strength, &def->bump, error);
+    if (status == TY_OK && !def->thin_walled && !is_zero(&def->subsurface_weight))
+        return ty_error_set(error, TY_BAD_INPUT,
+                            "subsurface_weight is for `thin_walled: true`; bodies that light enters are `model: cdrf`");
+    if (status == TY_OK && def->thin_walled && def->priority != 0)
+        return ty_error_set(error, TY_BAD_INPUT, "priority: a thin_walled surface encloses nothing");
+    return status;
+}
+
+static unsigned surface_traits(const ty_surface_def* s)
+{
+    bool clear = !is_zero(&s->transmission_weight);
+    bool smooth = !is_constant(&s->specular_roughness) || s->specular_roughness.value.r < TY_SMOOTH_ROUGHNESS;
+    bool passes = !is_constant(&s->opacity) || s->opacity.value.r < 1.0f || (clear && s->thin_walled && smooth);
+    return (passes ? TY_TRAIT_TRANSPARENT : 0u) | (clear && !s->thin_walled ? TY_TRAIT_MEDIUM : 0u);
+}
+
+ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** out, ty_error* error)
+{
+    *out = NULL;
+    ty_status status = check_surface(def, error);
     if (status != TY_OK)
         return status;
     ty_material* m = TY_ALLOC(ty_material, 1);
     m->model = TY_MODEL_SURFACE;
     m->surface = *def;
-    bool fixed = is_constant(&def->specular_ior);
-    float ior = def->specular_ior.value.r;
-    m->specular = make_table(&def->specular_weight, &def->specular_roughness, fixed ? ior : 1.0f, fixed ? ior : 3.0f);
-    m->coat = make_table(&def->coat_weight, &def->coat_roughness, def->coat_ior, def->coat_ior);
-    make_loss_tables(m);
+    m->anisotropic = !is_zero(&def->specular_roughness_anisotropy);
+    m->bent = has_map(&def->normal, &def->bump);
+    m->traits = surface_traits(def);
+    make_surface_tables(m);
     *out = m;
     return TY_OK;
 }
@@ -89,12 +134,21 @@ ty_status ty_material_create_cdrf(const ty_cdrf_def* def, ty_material** out, ty_
     ty_status status = check_range("specular_ior", def->specular_ior, 1.0f, 3.0f, error);
     if (status == TY_OK)
         status = check_range("cooked", def->cooked, -1.0f, 1.0f, error);
+    if (status == TY_OK)
+        status = check_maps(def->normal_strength, &def->bump, error);
+    if (status == TY_OK && def->evaluate == TY_CDRF_LOCAL && has_map(&def->normal, &def->bump))
+        status = ty_error_set(error, TY_BAD_INPUT,
+                              "evaluate: `local` has no reflection of its own for `normal` and `bump`; use `depth` or "
+                              "`probe`");
     if (status != TY_OK)
         return status;
     ty_material* m = TY_ALLOC(ty_material, 1);
     m->model = TY_MODEL_CDRF;
     m->cdrf = *def;
-    m->coat = make_table(&def->specular_weight, &def->specular_roughness, def->specular_ior, def->specular_ior);
+    float roughness[2];
+    table_range(&def->specular_roughness, 0.0f, 1.0f, roughness);
+    m->coat = make_table(&def->specular_weight, roughness, def->specular_ior, def->specular_ior);
+    m->bent = has_map(&def->normal, &def->bump);
     if (def->evaluate == TY_CDRF_LOCAL && def->kernel == TY_CDRF_POISSON)
         m->poisson = ty_poisson_table_create();
     *out = m;
@@ -139,20 +193,62 @@ ty_rgb ty_material_emission(const ty_material* material, const ty_shading_contex
                         ty_max(ty_input_float(&s->emission_luminance, context, point), 0.0f));
 }
 
+unsigned ty_material_traits(const ty_material* material)
+{
+    return material->traits;
+}
+
+// A smooth sheet lets light through unbent: the path must not take it for a new direction, or what shadow rays carry
+// through would be counted twice.
+static ty_rgb through_sheet(const ty_material* material, const ty_shading_context* context,
+                            const ty_surface_point* point, ty_vec3 wo)
+{
+    ty_bsdf b;
+    ty_material_prepare(material, context, point, wo, &b);
+    if (b.alpha.x > 0.0f || b.transmission_weight <= 0.0f)
+        return ty_rgb_grey(0.0f);
+    float mu = ty_dot(b.wo, b.frame.n);
+    return ty_rgb_scale(ty_surface_transmittance(&b, mu), ty_surface_across_coat(&b, mu, mu));
+}
+
+ty_transparency ty_material_transparency(const ty_material* material, const ty_shading_context* context,
+                                         const ty_surface_point* point, ty_vec3 wo)
+{
+    if (!(material->traits & TY_TRAIT_TRANSPARENT))
+        return (ty_transparency){.opacity = 1.0f};
+    const ty_surface_def* s = &material->surface;
+    float opacity = ty_clamp(ty_input_float(&s->opacity, context, point), 0.0f, 1.0f);
+    ty_transparency t = {ty_rgb_grey(1.0f - opacity), opacity};
+    if (s->thin_walled && opacity > 0.0f && !is_zero(&s->transmission_weight))
+        t.through = ty_rgb_add(t.through, ty_rgb_scale(through_sheet(material, context, point, wo), opacity));
+    return t;
+}
+
 // Shading normals may turn away from a viewer who sees the triangle: bend them back until they face wo.
-static ty_vec3 facing_normal(ty_vec3 ns, ty_vec3 wo)
+ty_vec3 ty_facing_normal(ty_vec3 n, ty_vec3 wo)
 {
     const float least = 1e-3f;
-    float c = ty_dot(ns, wo);
-    return c >= least ? ns : ty_normalize(ty_mad(ns, wo, least - c));
+    float c = ty_dot(n, wo);
+    return c >= least ? n : ty_normalize(ty_mad(n, wo, least - c));
 }
 
 void ty_material_prepare(const ty_material* material, const ty_shading_context* context, const ty_surface_point* point,
                          ty_vec3 wo, ty_bsdf* out)
 {
-    *out = (ty_bsdf){.material = material, .point = *point, .wo = wo};
+    ty_material_prepare_within(material, context, point, wo, 1.0f, out);
+}
+
+void ty_material_prepare_within(const ty_material* material, const ty_shading_context* context,
+                                const ty_surface_point* point, ty_vec3 wo, float outside, ty_bsdf* out)
+{
+    *out = (ty_bsdf){.material = material, .point = *point, .wo = wo, .outside = outside};
     out->entering = ty_dot(wo, point->ng) > 0.0f;
-    out->frame = ty_frame_from_normal(facing_normal(out->entering ? point->ns : ty_neg(point->ns), wo));
+    if (material->bent)
+        ty_shading_frame_bend(material, context, out);
+    else
+        out->frame = ty_frame_from_normal(ty_facing_normal(out->entering ? point->ns : ty_neg(point->ns), wo));
+    if (material->anisotropic)
+        ty_shading_frame_turn(material, context, out);
     if (context && context->world)
     {
         uint32_t prototype = ty_world_prototype(context->world, point->object, point->instance);

@@ -11,6 +11,8 @@ ty_surface_def ty_surface_def_default(void)
         .specular_color = ty_input_scalar(1.0f),
         .specular_roughness = ty_input_scalar(0.3f),
         .specular_ior = ty_input_scalar(1.5f),
+        .specular_roughness_anisotropy = ty_input_scalar(0.0f),
+        .specular_rotation = ty_input_scalar(0.0f),
         .transmission_weight = ty_input_scalar(0.0f),
         .transmission_color = ty_input_scalar(1.0f),
         .transmission_depth = 0.0f,
@@ -19,6 +21,12 @@ ty_surface_def ty_surface_def_default(void)
         .coat_ior = 1.6f,
         .emission_luminance = ty_input_scalar(0.0f),
         .emission_color = ty_input_scalar(1.0f),
+        .opacity = ty_input_scalar(1.0f),
+        .subsurface_weight = ty_input_scalar(0.0f),
+        .subsurface_color = ty_input_scalar(0.8f),
+        .normal = ty_input_scalar(1.0f),
+        .normal_strength = 1.0f,
+        .bump = ty_input_scalar(0.0f),
     };
 }
 
@@ -35,6 +43,9 @@ ty_cdrf_def ty_cdrf_def_default(void)
         .specular_weight = ty_input_scalar(1.0f),
         .specular_roughness = ty_input_scalar(-1.0f),
         .specular_ior = 1.38f,
+        .normal = ty_input_scalar(1.0f),
+        .normal_strength = 1.0f,
+        .bump = ty_input_scalar(0.0f),
     };
 }
 
@@ -57,6 +68,13 @@ static void cdrf_default(void* def)
 #define COLOR TY_PARAM_COLOR_INPUT
 #define NUMBER TY_PARAM_FLOAT
 
+#define SWITCH TY_PARAM_BOOL
+#define NORMAL_ROWS                                                                                                    \
+    ROW(normal, TY_PARAM_VECTOR_INPUT, "", -100, 100,                                                                  \
+        "normal map in tangent space, +y along v; value [1, -1, 1] for maps with -y"),                                 \
+        ROW(normal_strength, NUMBER, "", 0, 100, "factor of the map's x and y"),                                       \
+        ROW(bump, SCALAR, "m", -1000, 1000, "height along the normal, from a texture: scale is metres per unit")
+
 #define DEF ty_surface_def
 static const ty_param surface_rows[] = {
     ROW(base_color, COLOR, "", 0, 1, "albedo of the diffuse base, or reflectance of the metal"),
@@ -65,6 +83,8 @@ static const ty_param surface_rows[] = {
     ROW(specular_color, COLOR, "", 0, 1, "tint of the dielectric reflection; of a metal at grazing angles"),
     ROW(specular_roughness, SCALAR, "", 0, 1, "GGX alpha is its square; below .02 it is a mirror"),
     ROW(specular_ior, SCALAR, "", 1, 3, "refractive index of the dielectric"),
+    ROW(specular_roughness_anisotropy, SCALAR, "", 0, 1, "stretches highlights: smoother along the texture's v than u"),
+    ROW(specular_rotation, SCALAR, "deg", -360, 360, "turns that direction about the normal"),
     ROW(transmission_weight, SCALAR, "", 0, 1, "share of the dielectric base that is clear instead of diffuse"),
     ROW(transmission_color, COLOR, "", 0, 1, "tint over transmission_depth, or per surface where that is 0"),
     ROW(transmission_depth, NUMBER, "m", 0, 1000, "way through the body after which transmission_color is reached"),
@@ -73,6 +93,14 @@ static const ty_param surface_rows[] = {
     ROW(coat_ior, NUMBER, "", 1, 3, "refractive index of the coat"),
     ROW(emission_luminance, SCALAR, "W/(m^2 sr)", 0, 1e9, "radiance emitted on the outer side"),
     ROW(emission_color, COLOR, "", 0, 1000, "colour of the emission"),
+    ROW(opacity, SCALAR, "", 0, 1, "0 = light passes as if nothing were there; shadows follow"),
+    ROW(thin_walled, SWITCH, "", 0, 0, "a sheet without inside: a pane, a soap film, a leaf"),
+    ROW(subsurface_weight, SCALAR, "", 0, 1, "thin_walled alone: share of the diffuse base that light shines through"),
+    ROW(subsurface_color, COLOR, "", 0, 1, "albedo of that share, both sides together"),
+    ROW(subsurface_anisotropy, NUMBER, "", -1, 1, "where its light goes: -1 all back, 0 evenly, 1 all through"),
+    ROW(priority, TY_PARAM_INT, "", -1000, 1000,
+        "where clear bodies overlap the highest is there; of equals the one entered last"),
+    NORMAL_ROWS,
 };
 #undef DEF
 
@@ -100,6 +128,7 @@ static const ty_param cdrf_rows[] = {
     ROW(specular_weight, SCALAR, "", 0, 1, "strength of the reflection at the surface; less where it is dry"),
     ROW(specular_roughness, SCALAR, "", -1, 1, "roughness of the reflection; negative: from moisture"),
     ROW(specular_ior, NUMBER, "", 1, 3, "refractive index of the surface"),
+    NORMAL_ROWS,
 };
 #undef DEF
 

@@ -28,33 +28,44 @@ static float layer_average(const ty_bsdf* b)
     return 1.0f - coat - base + common;
 }
 
-// Directional albedo of the dielectric reflection, exact for mirrors.
-static float dielectric_albedo(const ty_bsdf* b, float mu)
+// Reflection of the base's boundary seen from mu, exact for mirrors.
+static ty_rgb specular_albedo(const ty_bsdf* b, float mu)
 {
-    float share = ty_surface_boundary(b, mu);
-    if (b->alpha.x == 0.0f)
-        return share;
-    return b->inside ? ty_clamp(share, 0.1f, 0.9f) : b->specular_weight * ty_albedo_row_at(&b->specular_row, mu);
+    if (b->alpha.x == 0.0f || b->thin)
+        return ty_surface_reflectance(b, mu);
+    float share = b->inside ? b->transmission_weight * ty_clamp(ty_surface_boundary(b, mu), 0.1f, 0.9f)
+                            : b->specular_weight * ty_albedo_row_at(&b->specular_row, mu);
+    ty_rgb metal = ty_fresnel_schlick(b->color, b->specular_tint, mu);
+    return ty_rgb_add(ty_rgb_scale(b->specular_tint, (1.0f - b->metalness) * share),
+                      ty_rgb_scale(metal, b->metalness * b->specular_weight));
+}
+
+static ty_rgb transmission_albedo(const ty_bsdf* b, float mu)
+{
+    if (b->thin && b->alpha.x == 0.0f)
+        return ty_rgb_grey(0.0f); // passes unbent: ty_material_transparency
+    if (b->alpha.x == 0.0f || b->thin)
+        return ty_surface_transmittance(b, mu);
+    float share = b->inside ? ty_clamp(ty_surface_boundary(b, mu), 0.1f, 0.9f)
+                            : b->specular_weight * ty_albedo_row_at(&b->specular_row, mu);
+    return ty_rgb_scale(b->transmission, ty_surface_clear(b) * (1.0f - share));
 }
 
 // Albedos of the lobes seen from mu, as rgb.
 static void lobe_albedos(const ty_bsdf* b, float mu, ty_rgb albedo[TY_LOBE_COUNT])
 {
-    float coat = b->inside ? 0.0f : ty_coat_albedo(b, mu), left = 1.0f - coat, reflected = dielectric_albedo(b, mu);
-    float clear = ty_surface_clear(b);
-    ty_rgb metal = ty_fresnel_schlick(b->color, b->specular_tint, mu);
+    float coat = b->inside ? 0.0f : ty_coat_albedo(b, mu), left = 1.0f - coat;
+    float diffuse = ty_surface_through_layers(b, mu) * ty_surface_diffuse(b);
+    ty_rgb metal_lost = ty_rgb_scale(b->conductor_gain, TY_PI * b->conductor_loss.average);
     ty_rgb near = ty_rgb_scale(b->specular_tint, b->near_gain * TY_PI * b->near_loss.average);
     ty_rgb far = ty_rgb_scale(b->transmission, b->far_gain * TY_PI * b->far_loss.average);
-    ty_rgb metal_lost = ty_rgb_scale(b->conductor_gain, TY_PI * b->conductor_loss.average);
     albedo[TY_LOBE_COAT] = ty_rgb_grey(coat);
-    albedo[TY_LOBE_SPECULAR] =
-        ty_rgb_scale(ty_rgb_add(ty_rgb_scale(b->specular_tint, (b->inside ? clear : 1.0f - b->metalness) * reflected),
-                                ty_rgb_scale(metal, b->metalness * b->specular_weight)),
-                     left);
-    albedo[TY_LOBE_DIFFUSE] = ty_rgb_scale(b->color, ty_surface_through_layers(b, mu) * ty_surface_diffuse(b));
-    albedo[TY_LOBE_TRANSMISSION] = ty_rgb_scale(b->transmission, left * clear * (1.0f - reflected));
+    albedo[TY_LOBE_SPECULAR] = ty_rgb_scale(specular_albedo(b, mu), left);
+    albedo[TY_LOBE_DIFFUSE] = ty_rgb_scale(b->diffuse, diffuse);
+    albedo[TY_LOBE_TRANSMISSION] = ty_rgb_scale(transmission_albedo(b, mu), left);
     albedo[TY_LOBE_LOST_ABOVE] = ty_rgb_scale(ty_rgb_add(metal_lost, near), left);
     albedo[TY_LOBE_LOST_BELOW] = ty_rgb_scale(far, left);
+    albedo[TY_LOBE_DIFFUSE_BELOW] = ty_rgb_scale(b->diffuse_below, diffuse);
 }
 
 static void choose_probabilities(ty_bsdf* b, float mu)
@@ -77,18 +88,24 @@ static void prepare_transmission(const ty_surface_def* s, const ty_shading_conte
     b->transmission_weight = unit_input(&s->transmission_weight, context, p);
     if (b->transmission_weight <= 0.0f || b->metalness >= 1.0f)
         return;
-    b->inside = !b->entering;
+    b->inside = !b->entering && !b->thin;
     ty_rgb tint = clamp_color(ty_input_color(&s->transmission_color, context, p));
-    if (s->transmission_depth <= 0.0f)
-    {
-        b->transmission = tint;
+    // Over a depth the tint is the medium's, not the boundary's.
+    b->transmission = s->transmission_depth <= 0.0f || b->thin ? tint : ty_rgb_grey(1.0f);
+}
+
+// The share of the base that is a thin sheet of scattering matter sends light to both sides (OpenPBR Surface 1.1,
+// "Thin-walled case").
+static void prepare_diffuse(const ty_surface_def* s, const ty_shading_context* context, ty_bsdf* b)
+{
+    b->diffuse = b->color;
+    if (!b->thin)
         return;
-    }
-    const float blackest = 1e-6f;
-    float per_m = -1.0f / s->transmission_depth;
-    b->transmission = ty_rgb_grey(1.0f);
-    b->absorption = ty_rgb_make(per_m * ty_ln(ty_max(tint.r, blackest)), per_m * ty_ln(ty_max(tint.g, blackest)),
-                                per_m * ty_ln(ty_max(tint.b, blackest)));
+    float weight = unit_input(&s->subsurface_weight, context, &b->point);
+    ty_rgb color = clamp_color(ty_input_color(&s->subsurface_color, context, &b->point));
+    float through = 0.5f * (1.0f + s->subsurface_anisotropy);
+    b->diffuse = ty_rgb_lerp(b->color, ty_rgb_scale(color, 1.0f - through), weight);
+    b->diffuse_below = ty_rgb_scale(color, through * weight);
 }
 
 // The mean of Schlick's form over the cosine-weighted hemisphere.
@@ -117,15 +134,33 @@ static void prepare_conductor_loss(const ty_material* material, float roughness,
                                     scale * conductor_share(w * schlick_average(f0.b, f90.b), loss));
 }
 
+// Mean reflectance of a boundary to a denser medium (fit of Kulla & Conty 2017).
+static float boundary_average(float n)
+{
+    return n > 1.0f ? (n - 1.0f) / (4.08567f + 1.00071f * n) : 0.0f;
+}
+
 // Share of what is lost on wo's side of a clear boundary that goes on beyond it. Reciprocal: what one side hands over
 // in a uniform light is what the other hands back, t1 l1 = t2 n^2 l2 (Kulla & Conty 2017); 1 - the mean Fresnel
 // reflectance where the losses are alike.
 static float far_share(const ty_bsdf* b)
 {
     float near = b->near_loss.average, far = b->far_loss.average, n = ty_max(b->eta, 1.0f / b->eta);
-    float through = 1.0f - b->specular_weight * (n - 1.0f) / (4.08567f + 1.00071f * n);
-    through *= ty_min(near, far) / near;
+    float through = (1.0f - b->specular_weight * boundary_average(n)) * ty_min(near, far) / near;
     return b->eta >= 1.0f ? through : through / (n * n);
+}
+
+// Of a sheet both lobes are those of a reflection, so that it loses what a metal loses.
+static void prepare_sheet_loss(const ty_material* material, float roughness, float mu, ty_bsdf* b)
+{
+    b->near_loss = b->far_loss = ty_loss_table_row(material->conductor, roughness, 1.0f);
+    float loss = b->near_loss.average;
+    if (!(loss > 0.0f))
+        return;
+    float f = b->specular_weight * boundary_average(b->eta), scale = ty_loss_row_at(&b->near_loss, mu);
+    scale *= ty_surface_clear(b) / (TY_PI * loss);
+    b->near_gain = scale * 2.0f * f / (1.0f + f);
+    b->far_gain = scale * (1.0f - f) / (1.0f + f);
 }
 
 static void prepare_dielectric_loss(const ty_material* material, float roughness, float mu, ty_bsdf* b)
@@ -147,7 +182,9 @@ static void prepare_loss(const ty_material* material, float roughness, ty_bsdf* 
     float mu = ty_dot(b->wo, b->frame.n);
     if (b->metalness > 0.0f)
         prepare_conductor_loss(material, roughness, mu, b);
-    if (ty_surface_clear(b) > 0.0f)
+    if (ty_surface_clear(b) > 0.0f && b->thin)
+        prepare_sheet_loss(material, roughness, mu, b);
+    else if (ty_surface_clear(b) > 0.0f)
         prepare_dielectric_loss(material, roughness, mu, b);
 }
 
@@ -163,26 +200,44 @@ static void prepare_coat(const ty_material* material, const ty_shading_context* 
     b->coat_row = ty_albedo_table_row(material->coat, roughness, s->coat_ior);
 }
 
+// Roughness, index and what follows from them. b->outside is the index of what is around the body.
+static void prepare_boundary(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
+{
+    const ty_surface_def* s = &material->surface;
+    const ty_surface_point* p = &b->point;
+    float roughness = unit_input(&s->specular_roughness, context, p);
+    float ior = ty_clamp(ty_input_float(&s->specular_ior, context, p), 1.0f, 3.0f);
+    // Opaque bases keep the index of air: what lies beneath is coupled by a table for that.
+    float relative = b->transmission_weight > 0.0f ? ior / b->outside : ior;
+    b->eta = b->inside ? 1.0f / relative : relative;
+    // Matched indices bend nothing, and a rough boundary would have no facet to speak of.
+    if (fabsf(relative - 1.0f) < 0.001f && b->transmission_weight > 0.0f)
+        b->alpha = ty_ggx_round(0.0f);
+    else if (material->anisotropic)
+        b->alpha = ty_ggx_alpha_stretched(roughness, unit_input(&s->specular_roughness_anisotropy, context, p));
+    else
+        b->alpha = ty_ggx_round(ty_ggx_alpha(roughness));
+    if (!b->inside)
+        b->specular_row = ty_albedo_table_row(material->specular, roughness, ior);
+    // Stretching keeps the mean square of the slopes, and with it about what is lost.
+    prepare_loss(material, roughness, b);
+}
+
 void ty_surface_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
 {
     const ty_surface_def* s = &material->surface;
     const ty_surface_point* p = &b->point;
     b->kind = TY_BSDF_SURFACE;
+    b->thin = s->thin_walled;
     b->color = clamp_color(ty_input_color(&s->base_color, context, p));
     b->specular_tint = clamp_color(ty_input_color(&s->specular_color, context, p));
     b->metalness = unit_input(&s->base_metalness, context, p);
     b->specular_weight = unit_input(&s->specular_weight, context, p);
     prepare_transmission(s, context, b);
-    float roughness = unit_input(&s->specular_roughness, context, p);
-    float ior = ty_clamp(ty_input_float(&s->specular_ior, context, p), 1.0f, 3.0f);
-    // Matched indices bend nothing, and a rough boundary would have no facet to speak of.
-    b->alpha = ty_ggx_round(ior < 1.001f && b->transmission_weight > 0.0f ? 0.0f : ty_ggx_alpha(roughness));
-    b->eta = b->inside ? 1.0f / ior : ior;
-    if (!b->inside)
-        b->specular_row = ty_albedo_table_row(material->specular, roughness, ior);
+    prepare_diffuse(s, context, b);
+    prepare_boundary(material, context, b);
     if (material->coat)
         prepare_coat(material, context, b);
-    prepare_loss(material, roughness, b);
     if (b->entering)
         b->emission = ty_material_emission(material, context, p);
     b->layer_average = layer_average(b);

@@ -18,12 +18,34 @@ float ty_surface_boundary(const ty_bsdf* b, float cos_h)
     return f;
 }
 
+// All orders of reflection between its sides.
+static float sheet_transmits(float f, float c)
+{
+    float back = c * f;
+    return f < 1.0f ? c * ty_sqr(1.0f - f) / (1.0f - back * back) : 0.0f;
+}
+
+ty_sheet ty_surface_sheet(const ty_bsdf* b, float cos_h)
+{
+    float f = ty_surface_boundary(b, cos_h);
+    ty_rgb c = b->transmission;
+    ty_rgb t = {sheet_transmits(f, c.r), sheet_transmits(f, c.g), sheet_transmits(f, c.b)};
+    return (ty_sheet){.reflected = {f + f * c.r * t.r, f + f * c.g * t.g, f + f * c.b * t.b}, .transmitted = t};
+}
+
+static ty_rgb dielectric_reflectance(const ty_bsdf* b, float cos_h)
+{
+    float f = ty_surface_boundary(b, cos_h), opaque = ty_surface_diffuse(b);
+    if (b->thin && b->transmission_weight > 0.0f)
+        return ty_rgb_add(ty_rgb_scale(ty_surface_sheet(b, cos_h).reflected, ty_surface_clear(b)),
+                          ty_rgb_grey(f * opaque));
+    // From within only the clear share of the base is a boundary.
+    return ty_rgb_grey((1.0f - b->metalness) * (b->inside ? b->transmission_weight : 1.0f) * f);
+}
+
 ty_rgb ty_surface_reflectance(const ty_bsdf* b, float cos_h)
 {
-    float dielectric = (1.0f - b->metalness) * ty_surface_boundary(b, cos_h);
-    if (b->inside) // from within only the clear share of the base is a boundary
-        dielectric *= b->transmission_weight;
-    ty_rgb sum = ty_rgb_scale(b->specular_tint, dielectric);
+    ty_rgb sum = ty_rgb_mul(b->specular_tint, dielectric_reflectance(b, cos_h));
     if (b->metalness > 0.0f)
     {
         ty_rgb metal = ty_fresnel_schlick(b->color, b->specular_tint, cos_h);
@@ -35,6 +57,8 @@ ty_rgb ty_surface_reflectance(const ty_bsdf* b, float cos_h)
 // The boundary's alone: the coat takes its part where the light is outside.
 ty_rgb ty_surface_transmittance(const ty_bsdf* b, float cos_h)
 {
+    if (b->thin)
+        return ty_rgb_scale(ty_surface_sheet(b, cos_h).transmitted, ty_surface_clear(b));
     float f = ty_fresnel(cos_h, b->eta);
     return ty_rgb_scale(b->transmission, f < 1.0f ? ty_surface_clear(b) * (1.0f - f * b->specular_weight) : 0.0f);
 }
@@ -68,7 +92,7 @@ static float diffuse_coupling(const ty_bsdf* b, float mu_o, float mu_i)
 bool ty_surface_is_delta(const ty_bsdf* b)
 {
     const float* p = b->lobe_probability;
-    return !(p[TY_LOBE_DIFFUSE] > 0.0f || p[TY_LOBE_LOST_ABOVE] > 0.0f ||
+    return !(p[TY_LOBE_DIFFUSE] + p[TY_LOBE_LOST_ABOVE] + p[TY_LOBE_DIFFUSE_BELOW] > 0.0f ||
              (p[TY_LOBE_COAT] > 0.0f && b->coat_alpha > 0.0f) ||
              (b->alpha.x > 0.0f && p[TY_LOBE_SPECULAR] + p[TY_LOBE_TRANSMISSION] > 0.0f));
 }
@@ -126,7 +150,7 @@ static ty_rgb eval_reflection(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* p
     if (p[TY_LOBE_DIFFUSE] > 0.0f)
     {
         float k = diffuse_coupling(b, wo.z, wi.z) * ty_surface_diffuse(b);
-        f = ty_rgb_add(f, ty_rgb_scale(b->color, k * wi.z * TY_INV_PI));
+        f = ty_rgb_add(f, ty_rgb_scale(b->diffuse, k * wi.z * TY_INV_PI));
         *pdf += p[TY_LOBE_DIFFUSE] * wi.z * TY_INV_PI;
     }
     if (p[TY_LOBE_LOST_ABOVE] > 0.0f)
@@ -137,6 +161,14 @@ static ty_rgb eval_reflection(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* p
     return f;
 }
 
+// Through a sheet goes what a reflection would send up.
+static float transmit(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf, float* cos_h)
+{
+    if (!b->thin)
+        return ty_ggx_refract(wo, wi, b->alpha, b->eta, pdf, cos_h);
+    return ty_ggx_reflect(wo, ty_vec3_make(wi.x, wi.y, -wi.z), b->alpha, pdf, cos_h);
+}
+
 static ty_rgb eval_transmission(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
 {
     const float* p = b->lobe_probability;
@@ -144,7 +176,7 @@ static ty_rgb eval_transmission(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float*
     ty_rgb f = {0};
     if (p[TY_LOBE_TRANSMISSION] > 0.0f && b->alpha.x > 0.0f)
     {
-        float lobe_pdf, cos_h, d = ty_ggx_refract(wo, wi, b->alpha, b->eta, &lobe_pdf, &cos_h);
+        float lobe_pdf, cos_h, d = transmit(b, wo, wi, &lobe_pdf, &cos_h);
         f = ty_rgb_scale(ty_surface_transmittance(b, cos_h), d * coat);
         *pdf += facet_transmits(b, cos_h) * lobe_pdf;
     }
@@ -153,6 +185,12 @@ static ty_rgb eval_transmission(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float*
         float lost = b->far_gain * ty_loss_row_at(&b->far_loss, -wi.z) * -wi.z;
         f = ty_rgb_add(f, ty_rgb_scale(b->transmission, lost * coat));
         *pdf += p[TY_LOBE_LOST_BELOW] * ty_loss_row_pdf(&b->far_loss, -wi.z);
+    }
+    if (p[TY_LOBE_DIFFUSE_BELOW] > 0.0f)
+    {
+        float k = diffuse_coupling(b, wo.z, -wi.z) * ty_surface_diffuse(b);
+        f = ty_rgb_add(f, ty_rgb_scale(b->diffuse_below, k * -wi.z * TY_INV_PI));
+        *pdf += p[TY_LOBE_DIFFUSE_BELOW] * -wi.z * TY_INV_PI;
     }
     return f;
 }
@@ -203,6 +241,11 @@ static ty_vec3 sample_boundary(const ty_bsdf* b, ty_vec3 wo, float u_share, ty_v
         wi = ty_reflect(wo, h);
         return wi.z > 0.0f ? wi : (ty_vec3){0};
     }
+    if (b->thin)
+    {
+        wi = ty_reflect(wo, h);
+        return wi.z > 0.0f ? ty_vec3_make(wi.x, wi.y, -wi.z) : (ty_vec3){0};
+    }
     return ty_refract(wo, h, b->eta, &wi) && wi.z < 0.0f ? wi : (ty_vec3){0};
 }
 
@@ -224,6 +267,8 @@ static ty_vec3 sample_lobe(const ty_bsdf* b, ty_vec3 wo, int lobe, float u_rest,
         return around_normal(ty_loss_row_sample(row_above(b), u.x), u.y);
     case TY_LOBE_LOST_BELOW:
         return ty_neg(around_normal(ty_loss_row_sample(&b->far_loss, u.x), u.y));
+    case TY_LOBE_DIFFUSE_BELOW:
+        return ty_neg(ty_sample_cosine(u));
     case TY_LOBE_DIFFUSE:
     case TY_LOBE_COUNT:
         break;

@@ -11,6 +11,7 @@ typedef enum ty_surface_lobe
     TY_LOBE_TRANSMISSION,
     TY_LOBE_LOST_ABOVE, // what facets pass on among themselves and reflect in the end
     TY_LOBE_LOST_BELOW, // or transmit
+    TY_LOBE_DIFFUSE_BELOW,
     TY_LOBE_COUNT
 } ty_surface_lobe;
 
@@ -30,6 +31,13 @@ float ty_surface_boundary(const ty_bsdf* bsdf, float cos_h);
 // Reflectance of the base's specular lobe at a facet, and transmittance of its clear share.
 ty_rgb ty_surface_reflectance(const ty_bsdf* bsdf, float cos_h);
 ty_rgb ty_surface_transmittance(const ty_bsdf* bsdf, float cos_h);
+
+// A clear sheet: light goes back and forth between its sides, and c is left of it after each passage.
+typedef struct ty_sheet
+{
+    ty_rgb reflected, transmitted;
+} ty_sheet;
+ty_sheet ty_surface_sheet(const ty_bsdf* bsdf, float cos_h);
 
 // What coat and specular let through to or from the base.
 float ty_surface_through_layers(const ty_bsdf* bsdf, float mu);

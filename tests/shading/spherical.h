@@ -19,7 +19,9 @@ static inline void assert_near_at(double value, double expected, double toleranc
 
 #define RINGS 24
 #define SPOKES 16
+#ifndef INNER
 #define INNER 12 // quadrature points a cell and axis
+#endif
 
 // Cells about an axis, dense towards it: cos = 1 - 2 s^3 over rings of equal s.
 typedef struct cells

@@ -22,6 +22,7 @@ typedef enum ty_param_type
     TY_PARAM_ENUM,         // int, index into choices
     TY_PARAM_SCALAR_INPUT, // ty_input: a number, { texture: name, ... } or { attribute: name, scale:, offset: }
     TY_PARAM_COLOR_INPUT,  // ty_input with three channels
+    TY_PARAM_VECTOR_INPUT, // ty_input with three signed numbers of a texture: -1 + 2 * texel unless said
     TY_PARAM_GROUP,        // a nested struct in place, described by group
     TY_PARAM_LIST,         // ty_param_list of structs described by group
     TY_PARAM_NAMES,        // ty_param_list of ty_param_name: a mapping of names to names

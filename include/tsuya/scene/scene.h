@@ -89,6 +89,7 @@ typedef struct ty_render_def
     int samples;           // per pixel
     int max_depth;         // surface interactions of a path
     int roulette_depth;    // no Russian roulette before this many interactions
+    float indirect_clamp; // largest channel of what one path adds after its second scattering; 0 = unlimited
     ty_seed seed;          // of this frame, with animate_seed
     bool animate_seed;     // other noise in every frame
     int light_sampling;    // ty_light_sampling

@@ -48,15 +48,18 @@ typedef struct ty_bsdf
     bool entering;   // wo is outside the surface
     bool convex;     // the instance is convex: rays that leave it cannot meet it again
     bool inside;     // surface: wo is within a transmitting body
+    bool thin;       // surface: a sheet
+    bool bent;       // the frame's normal is that of a map: directions on the wrong side of ng are mirrored in it
 
     // Parameters at the point, meaning by kind.
-    ty_rgb color;         // base color or C
-    ty_rgb specular_tint; // specular color
-    ty_rgb transmission;  // factor for one crossing
-    ty_rgb absorption;    // 1/m, of the medium behind the surface
+    ty_rgb color;                  // base color or C
+    ty_rgb diffuse, diffuse_below; // surface: albedos of the diffuse base, reflected and (of sheets) transmitted
+    ty_rgb specular_tint;          // specular color
+    ty_rgb transmission;           // factor for one crossing
     float metalness, specular_weight, transmission_weight;
     ty_vec2 alpha;              // of the specular lobe along the frame's t and b; 0 = mirror
     float eta;                  // refractive index beyond the surface over that on wo's side
+    float outside;              // refractive index around the body
     float coat_weight;          // surface: of the coat; cdrf: of the specular reflection
     float coat_alpha, coat_eta; // alpha 0 = mirror
     ty_albedo_row specular_row; // E of the dielectric specular
@@ -66,7 +69,7 @@ typedef struct ty_bsdf
     ty_loss_row conductor_loss, near_loss, far_loss; // of the metal; of the clear boundary from wo's side and beyond
     ty_rgb conductor_gain;                           // factor of conductor_loss(wi) cos
     float near_gain, far_gain;                       // the same of near_loss and far_loss
-    float lobe_probability[6]; // surface: ty_surface_lobe; local: coat, cosine, uniform
+    float lobe_probability[7];                       // surface: ty_surface_lobe; local: coat, cosine, uniform
 
     // cdrf
     float mean_free_path; // m, world
@@ -102,9 +105,6 @@ bool ty_bsdf_is_delta(const ty_bsdf* bsdf);                       // light sampl
 ty_rgb ty_bsdf_eval(const ty_bsdf* bsdf, ty_vec3 wi, float* pdf); // f |cos|, and the pdf sample would have
 bool ty_bsdf_sample_wi(const ty_bsdf* bsdf, float u_lobe, ty_vec2 u, ty_bsdf_sample* out); // false = absorbed
 ty_rgb ty_bsdf_albedo(const ty_bsdf* bsdf); // for the albedo AOV, about 0..1
-// 1/m, of the medium behind a transmitting surface; zero otherwise. A path that arrives from within (entering is false)
-// has crossed it: multiply by exp(-absorption * distance).
-ty_rgb ty_bsdf_absorption(const ty_bsdf* bsdf);
 
 // Sets origin, direction, t_min, t_max = TY_FLOAT_MAX, flags, skips, time and mask = TY_MASK_ALL for a ray that leaves
 // towards wi.

@@ -20,8 +20,10 @@ typedef struct ty_surface_def
     ty_input base_metalness;  // 0..1
     ty_input specular_weight; // 0..1
     ty_input specular_color;
-    ty_input specular_roughness; // 0..1; GGX alpha = roughness^2; below .02 it is a mirror
-    ty_input specular_ior;       // 1..3
+    ty_input specular_roughness;            // 0..1; GGX alpha = roughness^2; below .02 it is a mirror
+    ty_input specular_ior;                  // 1..3
+    ty_input specular_roughness_anisotropy; // 0..1: longer along the texture's u, smaller across
+    ty_input specular_rotation;             // radians, of that direction about the normal
     ty_input transmission_weight;
     ty_input transmission_color; // tint at normal passage of transmission_depth, or per interface when that is 0
     float transmission_depth;    // m
@@ -30,6 +32,15 @@ typedef struct ty_surface_def
     float coat_ior;
     ty_input emission_luminance; // radiance
     ty_input emission_color;
+    ty_input opacity;            // 0..1, geometry_opacity: light passes the rest unbent
+    bool thin_walled;            // a sheet: transmitted light is not refracted, nothing is enclosed
+    ty_input subsurface_weight;  // of thin sheets: share of the diffuse base that light shines through
+    ty_input subsurface_color;   // its albedo, reflection and transmission together
+    float subsurface_anisotropy; // -1 = all reflected .. 1 = all transmitted
+    int priority;                // of the body where bodies overlap: the highest is there
+    ty_input normal;             // tangent space, +y along v; no texture = none
+    float normal_strength;
+    ty_input bump; // m, height along the normal; no texture = none
 } ty_surface_def;
 
 typedef enum ty_cdrf_kernel
@@ -57,6 +68,9 @@ typedef struct ty_cdrf_def
     ty_input specular_weight;    // 0 = no coat, the furnace of color 1 then gives exactly 1 as well
     ty_input specular_roughness; // < 0: from the moisture (a wet film is smoother)
     float specular_ior;
+    ty_input normal; // of the specular reflection: tangent space, +y along v; no texture = none
+    float normal_strength;
+    ty_input bump; // m, likewise
 } ty_cdrf_def;
 
 ty_surface_def ty_surface_def_default(void);
@@ -101,9 +115,28 @@ float ty_input_float(const ty_input* input, const ty_shading_context* context, c
 ty_rgb ty_material_emission(const ty_material* material, const ty_shading_context* context,
                             const ty_surface_point* point);
 
+typedef enum ty_material_trait
+{
+    TY_TRAIT_TRANSPARENT = 1, // light may go straight through: opacity, smooth sheets
+    TY_TRAIT_MEDIUM = 2,      // encloses a medium that light enters
+} ty_material_trait;
+unsigned ty_material_traits(const ty_material* material);
+
+// What goes straight through a surface as if nothing were there, and the share of the rest, which the bsdf describes.
+typedef struct ty_transparency
+{
+    ty_rgb through;
+    float opacity;
+} ty_transparency;
+ty_transparency ty_material_transparency(const ty_material* material, const ty_shading_context* context,
+                                         const ty_surface_point* point, ty_vec3 wo);
+
 #include <tsuya/shading/bsdf.h>
 
 // Prepares the lobes at a point seen along wo (unit, away from the surface). If the point is seen from behind, opaque
 // materials behave as from the front with the normal turned.
 void ty_material_prepare(const ty_material* material, const ty_shading_context* context, const ty_surface_point* point,
                          ty_vec3 wo, ty_bsdf* out);
+// The same where not air but a medium of this refractive index is around the body.
+void ty_material_prepare_within(const ty_material* material, const ty_shading_context* context,
+                                const ty_surface_point* point, ty_vec3 wo, float outside, ty_bsdf* out);

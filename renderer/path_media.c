@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clear bodies along a path: where the camera begins, what they absorb, what shadow rays see of transparent things.
+#include "path.h"
+
+ty_rgb ty_path_absorbed(ty_rgb absorption, float distance)
+{
+    if (ty_rgb_is_black(absorption))
+        return ty_rgb_grey(1.0f);
+    return (ty_rgb){ty_exp(-absorption.r * distance), ty_exp(-absorption.g * distance),
+                    ty_exp(-absorption.b * distance)};
+}
+
+static bool encloses(const ty_world* world, uint32_t object, uint32_t instance, ty_vec3 p)
+{
+    uint32_t prototype = ty_world_prototype(world, object, instance);
+    ty_affine to_local = ty_world_to_local(world, object, instance, 0.0f);
+    return ty_world_topology(world, prototype)->closed && ty_world_inside(world, prototype, ty_map_point(&to_local, p));
+}
+
+// The surface of the body that a ray from within meets, for the values of its medium.
+static bool find_wall(const ty_scene* scene, uint32_t object, uint32_t instance, ty_vec3 p, ty_surface_point* wall,
+                      ty_hit* hit)
+{
+    static const ty_vec3 direction = {0.5377f, 0.8339f, -0.1249f};
+    if (!ty_world_intersect_instance(scene->world, object, instance, 0.0f, p, direction, TY_FLOAT_MAX, hit))
+        return false;
+    ty_world_surface(scene->world, hit, wall);
+    return true;
+}
+
+static bool may_bound(const ty_scene* scene, uint32_t object)
+{
+    const ty_scene_object* o = &scene->objects[object];
+    for (uint32_t k = 0; k < ty_scene_material_count(o); ++k)
+        if (ty_material_traits(scene->materials[ty_scene_material_at(o, k)]) & TY_TRAIT_MEDIUM)
+            return true;
+    return false;
+}
+
+// The body whose wall is nearer is taken to lie within the other: of equal priority it is there.
+void ty_path_find_media(const ty_scene* scene, ty_vec3 p, ty_media* out)
+{
+    ty_medium found[TY_MEDIA_MAX];
+    float distance[TY_MEDIA_MAX];
+    int count = 0;
+    for (uint32_t object = 0; object < (uint32_t)scene->object_count; ++object)
+        for (uint32_t i = 0; i < scene->objects[object].instance_count && may_bound(scene, object); ++i)
+        {
+            ty_surface_point wall;
+            ty_hit hit;
+            if (count == TY_MEDIA_MAX || !encloses(scene->world, object, i, p) ||
+                !find_wall(scene, object, i, p, &wall, &hit))
+                continue;
+            const ty_material* material = ty_scene_material(scene, object, i, hit.triangle);
+            if (!(ty_material_traits(material) & TY_TRAIT_MEDIUM))
+                continue;
+            int k = count++;
+            for (; k > 0 && distance[k - 1] < hit.t; --k)
+            {
+                found[k] = found[k - 1];
+                distance[k] = distance[k - 1];
+            }
+            found[k] = ty_medium_make(material, &scene->shading, &wall);
+            distance[k] = hit.t;
+        }
+    out->count = 0;
+    for (int k = 0; k < count; ++k)
+        ty_media_cross(out, &found[k], true);
+}
+
+// On through a surface as if it were not there.
+void ty_path_pass(const ty_surface_point* point, float t, ty_ray* ray)
+{
+    ray->origin = ty_offset_origin(point, ty_dot(ray->direction, point->ng) >= 0.0f ? point->ng : ty_neg(point->ng));
+    ray->t_min = 0.0f;
+    if (ray->t_max < TY_FLOAT_MAX)
+        ray->t_max -= t;
+    if (ray->skip_distance < TY_FLOAT_MAX)
+        ray->skip_distance -= t;
+}
+
+ty_rgb ty_path_transmittance(const ty_integrator* in, ty_ray ray, ty_counters* counters)
+{
+    const ty_scene* scene = in->scene;
+    ty_rgb through = ty_rgb_grey(1.0f);
+    ray.mask = TY_MASK_SHADOW;
+    counters->shadow_rays++;
+    if (ty_world_occluded(scene->world, &ray))
+        return ty_rgb_grey(0.0f);
+    if (!in->has_transparent)
+        return through;
+    ray.mask = TY_MASK_SHADOW_TRANSPARENT;
+    for (int i = 0; i < TY_PATH_MAX_PASSED; ++i)
+    {
+        ty_hit hit;
+        ty_surface_point point;
+        counters->shadow_rays++;
+        if (!ty_world_intersect(scene->world, &ray, &hit))
+            return through;
+        ty_world_surface(scene->world, &hit, &point);
+        ty_transparency t = ty_material_transparency(ty_scene_material(scene, hit.object, hit.instance, hit.triangle),
+                                                     &scene->shading, &point, ty_neg(ray.direction));
+        through = ty_rgb_mul(through, t.through);
+        if (ty_rgb_is_black(through))
+            return through;
+        ty_path_pass(&point, hit.t, &ray);
+    }
+    return ty_rgb_grey(0.0f);
+}
