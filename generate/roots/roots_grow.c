@@ -173,7 +173,7 @@ static void root_grow(growth* g, int index)
     float begin = t.s;
     for (int i = 0; i < MOST_STEPS && t.r > recipe->tip && t.s < begin + recipe->length; i++)
     {
-        float step = ty_max(0.6f * t.r, recipe->tip);
+        float step = ty_max(0.6f * t.r, 1.5f * recipe->tip);
         roots_segment segment = {.a = point_of(&t), .root = t.root, .level = t.level};
         tip_step(g, &t, step, &rng);
         bool lies = g->host->has_floor && t.p.y < g->host->floor + 2.0f * t.r; // on the floor it thins out sooner

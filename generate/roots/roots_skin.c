@@ -6,7 +6,7 @@
 
 enum
 {
-    BLOCK = 8,                // corners of cells a side
+    BLOCK = 4,                // corners of cells a side
     MOST_CORNERS = 150000000, // of the grid: 600 MB
 };
 
@@ -323,20 +323,38 @@ typedef struct gridding
     roots_grid* grid;
 } gridding;
 
-static void corners_fill(void* context, int64_t begin, int64_t end, int worker)
+static ty_vec3 corner_place(const roots_grid* grid, float i, float j, float k)
+{
+    return ty_mad(grid->origin, ty_vec3_make(i, j, k), grid->step);
+}
+
+// The distance changes by less than twice the way: relief and flat sections take it above one.
+static void block_fill(const roots_skin* skin, const roots_grid* grid, const int first[3])
+{
+    const float half = 0.5f * (BLOCK - 1), away = 2.0f * 1.7321f * half * grid->step;
+    ty_vec3 middle = corner_place(grid, (float)first[0] + half, (float)first[1] + half, (float)first[2] + half);
+    float distance = roots_skin_at(skin, middle).distance;
+    bool is_near = distance > -away && distance < away;
+    for (int k = first[2]; k < first[2] + BLOCK && k < grid->size[2]; k++)
+        for (int j = first[1]; j < first[1] + BLOCK && j < grid->size[1]; j++)
+            for (int i = first[0]; i < first[0] + BLOCK && i < grid->size[0]; i++)
+            {
+                size_t at = ((size_t)k * (size_t)grid->size[1] + (size_t)j) * (size_t)grid->size[0] + (size_t)i;
+                ty_vec3 p = corner_place(grid, (float)i, (float)j, (float)k);
+                grid->values[at] = is_near ? roots_skin_at(skin, p).distance : distance;
+            }
+}
+
+static void blocks_grid(void* context, int64_t begin, int64_t end, int worker)
 {
     const gridding* g = context;
-    const roots_grid* grid = g->grid;
+    const int* blocks = g->skin->blocks;
     (void)worker;
-    for (int64_t row = begin; row < end; row++)
+    for (int64_t b = begin; b < end; b++)
     {
-        int j = (int)(row % grid->size[1]), k = (int)(row / grid->size[1]);
-        float* values = grid->values + (size_t)row * (size_t)grid->size[0];
-        for (int i = 0; i < grid->size[0]; i++)
-        {
-            ty_vec3 offset = {(float)i, (float)j, (float)k};
-            values[i] = roots_skin_at(g->skin, ty_mad(grid->origin, offset, grid->step)).distance;
-        }
+        const int first[3] = {(int)(b % blocks[0]) * BLOCK, (int)(b / blocks[0] % blocks[1]) * BLOCK,
+                              (int)(b / blocks[0] / blocks[1]) * BLOCK};
+        block_fill(g->skin, g->grid, first);
     }
 }
 
@@ -349,7 +367,8 @@ ty_status roots_skin_grid(const roots_skin* skin, ty_workers* workers, roots_gri
     if (!out->values)
         return ty_error_set(error, TY_NO_MEMORY, "no memory for %zu cells of roots", rows * (size_t)out->size[0]);
     gridding g = {skin, out};
-    if (ty_parallel_for(workers, (int64_t)rows, 16, corners_fill, &g))
+    int64_t blocks = (int64_t)skin->blocks[0] * skin->blocks[1] * skin->blocks[2];
+    if (ty_parallel_for(workers, blocks, 256, blocks_grid, &g))
         return TY_OK;
     ty_free(out->values);
     out->values = NULL;
