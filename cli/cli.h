@@ -109,6 +109,8 @@ typedef struct ty_develop_def
     float exposure; // stops
     int bits;       // 8 or 16
 } ty_develop_def;
+// From --display, --view, --exposure, --bits and --ocio.
+TY_CHECKED ty_status ty_develop_options(const ty_arguments* arguments, ty_develop_def* def);
 TY_CHECKED ty_status ty_develop(const ty_exr* exr, const ty_develop_def* def, const char* output, ty_error* error);
 
 void ty_signals_install(void);
@@ -116,3 +118,4 @@ void ty_signals_install(void);
 extern const ty_command ty_command_render, ty_command_develop, ty_command_merge, ty_command_check, ty_command_info,
     ty_command_params, ty_command_pack, ty_command_fill, ty_command_roots, ty_command_doctor;
 extern const ty_command ty_command_compare, ty_command_regress;
+extern const ty_command ty_command_turntable;

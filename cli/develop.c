@@ -63,7 +63,7 @@ ty_status ty_develop(const ty_exr* exr, const ty_develop_def* def, const char* o
     return status;
 }
 
-static ty_status develop_options(const ty_arguments* arguments, ty_develop_def* def)
+ty_status ty_develop_options(const ty_arguments* arguments, ty_develop_def* def)
 {
     *def = (ty_develop_def){.display = ty_argument_text(arguments, "display", NULL),
                             .view = ty_argument_text(arguments, "view", NULL),
@@ -116,7 +116,7 @@ static ty_status run(const ty_arguments* arguments)
 {
     const char* output = ty_argument_text(arguments, "output", NULL);
     ty_develop_def def;
-    ty_status status = develop_options(arguments, &def);
+    ty_status status = ty_develop_options(arguments, &def);
     if (status != TY_OK)
     {
         return status;

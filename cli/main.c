@@ -9,18 +9,19 @@
 #include <tsuya/base/workers.h>
 
 static const ty_command* const commands[] = {
-    &ty_command_render,  //
-    &ty_command_develop, //
-    &ty_command_merge,   //
-    &ty_command_compare, //
-    &ty_command_regress, //
-    &ty_command_check,   //
-    &ty_command_info,    //
-    &ty_command_params,  //
-    &ty_command_pack,    //
-    &ty_command_fill,    //
-    &ty_command_roots,   //
-    &ty_command_doctor,  //
+    &ty_command_render,    //
+    &ty_command_turntable, //
+    &ty_command_develop,   //
+    &ty_command_merge,     //
+    &ty_command_compare,   //
+    &ty_command_regress,   //
+    &ty_command_check,     //
+    &ty_command_info,      //
+    &ty_command_params,    //
+    &ty_command_pack,      //
+    &ty_command_fill,      //
+    &ty_command_roots,     //
+    &ty_command_doctor,    //
 };
 enum
 {

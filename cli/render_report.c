@@ -9,13 +9,22 @@ static json_t* count(uint64_t value)
     return json_integer((json_int_t)value);
 }
 
-static json_t* stats_json(const ty_scene* scene, const ty_render_stats* stats, const char* output)
+static json_t* rebuilds_json(const ty_scene_rebuilds* rebuilds)
+{
+    return json_pack("{s:i, s:i, s:i, s:i, s:i, s:i}", "frames", rebuilds->frames, "cameras", rebuilds->cameras,
+                     "materials", rebuilds->materials, "lights", rebuilds->lights, "objects", rebuilds->objects,
+                     "worlds", rebuilds->worlds);
+}
+
+json_t* ty_render_stats_json(const ty_scene* scene, const ty_render_stats* stats, const char* output)
 {
     uint64_t rays = stats->camera_rays + stats->path_rays + stats->shadow_rays + stats->interior_rays;
     json_t* root = json_object();
     json_object_set_new(root, "scene", json_string(scene->path));
     json_object_set_new(root, "hash", json_string(scene->hash));
     json_object_set_new(root, "output", output ? json_string(output) : json_null());
+    json_object_set_new(root, "frame", json_real(scene->frame));
+    json_object_set_new(root, "rebuilds", rebuilds_json(&scene->rebuilds));
     json_object_set_new(root, "width", json_integer(scene->film.size[0]));
     json_object_set_new(root, "height", json_integer(scene->film.size[1]));
     json_object_set_new(root, "samples", json_integer(stats->samples_done));
@@ -62,7 +71,7 @@ ty_status ty_render_report(const ty_scene* scene, const ty_arguments* arguments,
     const char* path = ty_argument_text(arguments, "stats", NULL);
     if (path)
     {
-        ty_status status = ty_json_write(path, stats_json(scene, stats, output));
+        ty_status status = ty_json_write(path, ty_render_stats_json(scene, stats, output));
         if (status != TY_OK)
         {
             return status;
@@ -70,9 +79,14 @@ ty_status ty_render_report(const ty_scene* scene, const ty_arguments* arguments,
     }
     if (ty_argument_has(arguments, "json"))
     {
-        return ty_json_print(stats_json(scene, stats, output));
+        return ty_json_print(ty_render_stats_json(scene, stats, output));
     }
-    if (output)
+    return ty_render_report_files(arguments, output, preview);
+}
+
+ty_status ty_render_report_files(const ty_arguments* arguments, const char* output, const char* preview)
+{
+    if (output && !ty_argument_has(arguments, "json"))
     {
         printf("%s\n", output);
         if (preview[0])

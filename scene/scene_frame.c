@@ -22,17 +22,23 @@ static void read_timeline(ty_loader* loader)
                   def->end, def->start);
 }
 
-static void read_frame(ty_loader* loader)
+static void parse_frame(ty_loader* loader, const ty_node* node)
 {
     char described[80];
-    const ty_node* node = loader->frame_node;
-    loader->scene->frame = loader->scene->timeline.start;
-    if (!node || node->bad)
-        return;
     bool good = node->kind == TY_NODE_SCALAR && ty_number_parse(node->text, &loader->scene->frame);
     if (!good || fabs(loader->scene->frame) > MOST_FRAME)
         ty_report(loader->errors, node->place, TY_BAD_INPUT, "'frame': expected a number -1e7..1e7, got %s",
                   ty_node_describe(node, described));
+}
+
+static void read_frame(ty_loader* loader)
+{
+    const ty_node* node = loader->frame_node;
+    loader->scene->frame = loader->scene->timeline.start;
+    if (node && !node->bad)
+        parse_frame(loader, node);
+    if (loader->options->frame)
+        loader->scene->frame = *loader->options->frame;
 }
 
 // The recipe of a picture tells its frame wherever frames may differ.
@@ -137,7 +143,7 @@ static bool has_key(const ty_track* track, double time)
 static void check_at(ty_loader* loader, int entry, double frame)
 {
     int before = loader->errors->count;
-    ty_timeline_evaluate(&loader->timeline, entry, (ty_moment){frame, 0.0}, loader->errors);
+    ty_timeline_evaluate(&loader->timeline, entry, (ty_moment){frame, 0.0}, NULL);
     read_entry(loader, &loader->timeline.entries[entry]);
     forget_repeated(loader->errors, before);
 }

@@ -137,7 +137,8 @@ void ty_timeline_evaluate(ty_timeline* timeline, int entry, ty_moment moment, ty
     for (int i = 0; i < animated->track_count; ++i)
     {
         ty_track* track = &timeline->tracks[animated->first_track + i];
-        check_outside(track, moment, errors);
+        if (errors)
+            check_outside(track, moment, errors);
         animated->changed |= evaluate(track, moment);
     }
 }

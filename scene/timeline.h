@@ -77,7 +77,8 @@ enum
 // Finds every keyed value below root and puts a plain one in its place; reports those that make no sense or stand where
 // nothing changes with time.
 void ty_timeline_collect(ty_timeline* timeline, ty_tree* tree, ty_reader* reader, ty_node* root);
-// Gives the tracks of an entry their values; marks it as changed when any is another than before.
+// Gives the tracks of an entry their values; marks it as changed when any is another than before. errors NULL: what is
+// outside where that is an error is not told.
 void ty_timeline_evaluate(ty_timeline* timeline, int entry, ty_moment moment, ty_error_list* errors);
 // One component of a track at a moment; within its keys, so neither ERROR nor a report.
 double ty_track_value(const ty_track* track, int component, ty_moment moment);

@@ -219,7 +219,7 @@ typedef struct ty_scene
     ty_arena* arena;
     const char* path; // of the scene file
     ty_film_def film;
-    ty_camera_def camera; // of this frame, turned by the turntable
+    ty_camera_def camera;        // of this frame, turned by the turntable
     ty_camera_def* camera_steps; // at even steps over the open shutter
     int camera_step_count;       // 1 = at rest
     bool moves;                  // camera or objects, while the shutter is open: rays have a time
@@ -242,7 +242,7 @@ typedef struct ty_scene
     int light_group_count;     // at most TY_LIGHT_GROUPS
     const bool** light_links;  // [light_link_count] -> [light_count + object_count], lights before emitting objects
     int light_link_count;      // the first is NULL: all of them
-    ty_texture** textures; // that light_images point to
+    ty_texture** textures;     // that light_images point to
     int texture_count;
     ty_mip_cache* texture_cache;       // NULL when no material has textures
     ty_mip_texture** surface_textures; // of materials, at this frame
@@ -273,6 +273,7 @@ typedef struct ty_scene_options
     uint64_t texture_bytes;   // of textures in memory at a time; 0 = TY_MIP_CACHE_BYTES. Changes no picture.
     bool sandbox;             // no path outside the scene's folder
     bool quick;               // half size and 16 samples, as overrides before all others
+    const double* frame;      // to begin with; NULL = as the file says
     bool check_only;          // read and verify everything, but make no asset and build no tree
     ty_trace_path trace_path;
     ty_workers* workers; // for generators; NULL = the caller
