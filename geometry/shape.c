@@ -26,13 +26,30 @@ static void set_default(void* def)
     *(ty_shape_def*)def = ty_shape_def_default();
 }
 
-static const char* const kinds[] = {"sphere", "ellipsoid", "box",  "cylinder", "torus", "plane",
-                                    "disc",   "bowl",      "dome", "sweep",    "stone", NULL};
+static const char* const kinds[] = {"sphere", "ellipsoid", "box",   "cylinder", "torus", "plane", "disc",
+                                    "bowl",   "dome",      "sweep", "stone",    "lathe", NULL};
 
 #define LENGTH(field, help)                                                                                            \
     {                                                                                                                  \
 #field, TY_PARAM_FLOAT, "m", 0, 1e4, NULL, NULL, offsetof(ty_shape_def, field), help, false                    \
     }
+
+static void set_point_default(void* def)
+{
+    *(ty_shape_point*)def = (ty_shape_point){0};
+}
+
+static const ty_param point_rows[] = {
+    {"at", TY_PARAM_FLOAT2, "m", -1e4, 1e4, NULL, NULL, offsetof(ty_shape_point, at), "[radius, height]", true},
+    {"rounding", TY_PARAM_FLOAT, "m", 0, 1e4, NULL, NULL, offsetof(ty_shape_point, rounding),
+     "radius of an arc in place of the corner", false},
+    {"smooth", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_shape_point, smooth),
+     "no corner: a curve goes through the point", false},
+};
+
+static const ty_param_table point_table = {
+    "asset.shape.profile",     "A point of a lathe's profile.", sizeof(ty_shape_point), set_point_default, point_rows,
+    TY_PARAM_COUNT(point_rows)};
 
 static const ty_param rows[] = {
     {"shape", TY_PARAM_ENUM, "", 0, 0, kinds, NULL, offsetof(ty_shape_def, kind), "which shape", true},
@@ -50,6 +67,8 @@ static const ty_param rows[] = {
     {"relief", TY_PARAM_FLOAT, "", 0, 0.5, NULL, NULL, offsetof(ty_shape_def, relief),
      "stone: faces and bumps against its size; 0 = an ellipsoid", false},
     {"variant", TY_PARAM_INT, "", 0, 1000000, NULL, NULL, offsetof(ty_shape_def, variant), "stone: which one", false},
+    {"profile", TY_PARAM_LIST, "", 0, 0, NULL, &point_table, offsetof(ty_shape_def, profile),
+     "lathe: points turned about y; closed from axis to axis, or when it ends where it began", false},
     {"divisions", TY_PARAM_INT, "", 8, 4096, NULL, NULL, offsetof(ty_shape_def, divisions),
      "segments around; the other direction follows the shape", false},
 };
@@ -142,6 +161,8 @@ static ty_status check_extents(const ty_shape_def* def, ty_error* error)
         return check_torus(def, error);
     case TY_SHAPE_BOWL:
         return check_bowl(def, error);
+    case TY_SHAPE_LATHE:
+        return ty_shape_check_lathe(def, error);
     case TY_SHAPE_SPHERE:
     case TY_SHAPE_DISC:
         break;
@@ -151,12 +172,12 @@ static ty_status check_extents(const ty_shape_def* def, ty_error* error)
 
 static ty_status check_def(const ty_shape_def* def, ty_error* error)
 {
-    if (def->kind < 0 || def->kind > TY_SHAPE_STONE)
+    if (def->kind < 0 || def->kind > TY_SHAPE_LATHE)
         return ty_error_set(error, TY_BAD_INPUT, "shape: %d: no such shape", def->kind);
     if (def->divisions < 8 || def->divisions > 4096)
         return ty_error_set(error, TY_BAD_INPUT, "divisions: %d: must be within 8 .. 4096", def->divisions);
     bool has_radius = def->kind != TY_SHAPE_ELLIPSOID && def->kind != TY_SHAPE_BOX && def->kind != TY_SHAPE_PLANE &&
-                      def->kind != TY_SHAPE_SWEEP && def->kind != TY_SHAPE_STONE;
+                      def->kind != TY_SHAPE_SWEEP && def->kind != TY_SHAPE_STONE && def->kind != TY_SHAPE_LATHE;
     ty_status status = has_radius ? check_length("radius", def->radius, error) : TY_OK;
     return status == TY_OK ? check_extents(def, error) : status;
 }
@@ -201,6 +222,9 @@ static void build_kind(ty_shape_build* build, const ty_shape_def* def)
         break;
     case TY_SHAPE_SWEEP:
         ty_shape_build_sweep(build, def);
+        break;
+    case TY_SHAPE_LATHE:
+        ty_shape_build_lathe(build, def);
         break;
     }
 }

@@ -597,7 +597,7 @@ static void test_impossible_sizes_name_the_field(void** state)
         def.field = (value);                                                                                           \
         assert_refused(def, name);                                                                                     \
     } while (0)
-    REFUSED(TY_SHAPE_SPHERE, kind, TY_SHAPE_STONE + 1, "shape");
+    REFUSED(TY_SHAPE_SPHERE, kind, TY_SHAPE_LATHE + 1, "shape");
     REFUSED(TY_SHAPE_SPHERE, kind, -1, "shape");
     REFUSED(TY_SHAPE_SPHERE, divisions, 7, "divisions");
     REFUSED(TY_SHAPE_SPHERE, divisions, 4097, "divisions");
@@ -702,24 +702,25 @@ static void test_parameters_match_the_struct(void** state)
     memset(&def, 0xff, sizeof(def));
     table->set_default(&def);
     ty_shape_def expected = ty_shape_def_default();
-    assert_memory_equal(&def, &expected, sizeof(def));
     size_t covered = 0;
     for (int i = 0; i < table->count; i++)
     {
         const ty_param* p = &table->params[i];
-        covered += p->type == TY_PARAM_FLOAT3 ? 12 : 4;
+        size_t size = p->type == TY_PARAM_FLOAT3 ? 12 : p->type == TY_PARAM_LIST ? sizeof(void*) : 4;
+        assert_memory_equal((char*)&def + p->offset, (char*)&expected + p->offset, size);
+        covered += p->type == TY_PARAM_LIST ? sizeof(ty_param_list) : size;
         if (p->type != TY_PARAM_ENUM)
             continue;
         assert_string_equal(p->name, "shape");
         int choices = 0;
         while (p->choices[choices])
             choices++;
-        assert_int_equal(choices, TY_SHAPE_STONE + 1);
+        assert_int_equal(choices, TY_SHAPE_LATHE + 1);
         assert_string_equal(p->choices[TY_SHAPE_BOWL], "bowl");
         assert_string_equal(p->choices[TY_SHAPE_SWEEP], "sweep");
         assert_string_equal(p->choices[TY_SHAPE_TORUS], "torus");
     }
-    assert_int_equal(covered, sizeof(ty_shape_def));
+    assert_true(covered <= sizeof(ty_shape_def) && sizeof(ty_shape_def) - covered < 2 * sizeof(void*)); // padding
     // The default itself makes a mesh for every shape but the sweep, which needs a bend.
     for (int kind = 0; kind < TY_SHAPE_SWEEP; kind++)
     {
@@ -727,6 +728,106 @@ static void test_parameters_match_the_struct(void** state)
         def.kind = kind;
         ty_mesh_destroy(make(&def));
     }
+}
+
+static ty_mesh* lathe(const ty_shape_point* points, int count, int divisions)
+{
+    ty_shape_def def = shape_of(TY_SHAPE_LATHE);
+    def.profile = (ty_param_list){(void*)points, count};
+    def.divisions = divisions;
+    return make(&def);
+}
+
+static double volume_of(const ty_mesh* mesh)
+{
+    double six = 0.0;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+    {
+        const uint32_t* c = mesh->triangles[t];
+        const ty_vec3* p = mesh->positions;
+        six += (double)ty_dot(p[c[0]], ty_cross(p[c[1]], p[c[2]]));
+    }
+    return six / 6.0;
+}
+
+static void check_lathe(const ty_mesh* mesh, double volume, double tolerance)
+{
+    ty_mesh_topology t;
+    ty_mesh_analyse(mesh, &t);
+    assert_true(t.closed && t.components == 1);
+    assert_int_equal(t.nonmanifold_edges + t.misoriented_edges, 0);
+    check_surface(mesh);
+    assert_true(fabs(volume_of(mesh) / volume - 1.0) < tolerance);
+}
+
+// What an arc of radius e takes of a right angle at r: a square less a quarter disc, turned about the axis.
+static double taken_by_arc(double r, double e)
+{
+    const double pi = 3.14159265358979;
+    return 2 * pi * (e * e * (1 - pi / 4) * (r - e) + e * e * e * (0.5 - 1.0 / 3));
+}
+
+// A round cylinder from corners and arcs, either way round, and a half ball from a curve through exact points.
+static void test_lathe_turns_known_solids(void** state)
+{
+    (void)state;
+    const double pi = 3.14159265358979;
+    const ty_shape_point can[4] = {
+        {{0, -0.03f}, 0, false}, {{0.02f, -0.03f}, 0.005f, false}, {{0.02f, 0.03f}, 0, false}, {{0, 0.03f}, 0, false}};
+    const ty_shape_point back[4] = {can[3], can[2], can[1], can[0]};
+    for (int i = 0; i < 2; i++)
+    {
+        ty_mesh* mesh = lathe(i ? back : can, 4, 512);
+        check_lathe(mesh, pi * 0.02 * 0.02 * 0.06 - taken_by_arc(0.02, 0.005), 2e-4);
+        ty_mesh_destroy(mesh);
+    }
+    ty_shape_point ball[10];
+    for (int i = 0; i < 9; i++)
+        ball[i] = (ty_shape_point){
+            {i == 8 ? 0.0f : (float)(0.03 * cos(i * pi / 16)), (float)(0.03 * sin(i * pi / 16))}, 0, i > 0 && i < 8};
+    ball[9] = (ty_shape_point){{0, 0}, 0, false};
+    const ty_shape_point half[11] = {
+        {{0, 0}, 0, false}, ball[0], ball[1], ball[2], ball[3], ball[4], ball[5], ball[6], ball[7], ball[8]};
+    ty_mesh* mesh = lathe(half, 10, 256);
+    check_lathe(mesh, 2 * pi / 3 * 0.03 * 0.03 * 0.03, 2e-3);
+    ty_mesh_destroy(mesh);
+    // A ring: it ends where it began.
+    const ty_shape_point ring[5] = {{{0.02f, 0}, 0, false},
+                                    {{0.03f, 0}, 0.002f, false},
+                                    {{0.03f, 0.01f}, 0, false},
+                                    {{0.02f, 0.01f}, 0, false},
+                                    {{0.02f, 0}, 0, false}};
+    mesh = lathe(ring, 5, 128);
+    check_lathe(mesh, pi * (0.0009 - 0.0004) * 0.01 - taken_by_arc(0.03, 0.002), 1e-3);
+    ty_mesh_destroy(mesh);
+}
+
+static void test_bad_lathes_are_refused(void** state)
+{
+    (void)state;
+    const ty_shape_point bad[][4] = {
+        {{{0, 0}, 0, false}, {{-0.01f, 0}, 0, false}, {{0.01f, 0.01f}, 0, false}, {{0, 0.01f}, 0, false}},
+        {{{0, 0}, 0, false}, {{0.01f, 0}, 0.02f, false}, {{0.01f, 0.01f}, 0, false}, {{0, 0.01f}, 0, false}},
+        {{{0, 0}, 0, true}, {{0.01f, 0}, 0, false}, {{0.01f, 0.01f}, 0, false}, {{0, 0.01f}, 0, false}},
+        {{{0, 0}, 0, false}, {{0.01f, 0}, 0, false}, {{0.01f, 0}, 0, false}, {{0, 0.01f}, 0, false}},
+        {{{0, 0}, 0, false}, {{0.01f, 0}, 0, true}, {{0.01f, 0.01f}, 0.001f, false}, {{0, 0.01f}, 0, false}},
+        {{{0, 0}, 0, false}, {{0, 0.01f}, 0, false}, {{0.01f, 0.01f}, 0, false}, {{0, 0.02f}, 0, false}},
+        {{{0.05f, 0}, 0, false},
+         {{0.0001f, 0.001f}, 0, true},
+         {{0.0001f, 0.05f}, 0, true},
+         {{0.05f, 0.051f}, 0, false}},
+    };
+    ty_mesh* mesh;
+    ty_error error = {0};
+    for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++)
+    {
+        ty_shape_def def = shape_of(TY_SHAPE_LATHE);
+        def.profile = (ty_param_list){(void*)bad[i], 4};
+        assert_int_equal(ty_shape_create(&def, &mesh, &error), TY_BAD_INPUT);
+        assert_memory_equal(error.text, "profile", 7);
+    }
+    ty_shape_def none = shape_of(TY_SHAPE_LATHE);
+    assert_int_equal(ty_shape_create(&none, &mesh, &error), TY_BAD_INPUT);
 }
 
 int main(void)
@@ -750,6 +851,8 @@ int main(void)
         cmocka_unit_test(test_random_bowls_are_refused_or_sound),
         cmocka_unit_test(test_shapes_survive_exhaustion),
         cmocka_unit_test(test_parameters_match_the_struct),
+        cmocka_unit_test(test_lathe_turns_known_solids),
+        cmocka_unit_test(test_bad_lathes_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,23 +17,32 @@ typedef enum ty_shape_kind
     TY_SHAPE_DOME,      // radius, height: closed half ellipsoid standing on y = 0
     TY_SHAPE_SWEEP,     // size: a floor that curves up into a wall behind (photographer's sweep); open
     TY_SHAPE_STONE,     // size = semi-axes, relief, variant: a weathered stone
+    TY_SHAPE_LATHE,     // profile: a solid turned about y, or a surface where the profile is open
 } ty_shape_kind;
+
+typedef struct ty_shape_point
+{
+    float at[2];    // m, radius and height
+    float rounding; // m, radius of an arc in place of the corner
+    bool smooth;    // no corner: the profile is a curve through the point
+} ty_shape_point;
 
 typedef struct ty_shape_def
 {
-    int kind;          // ty_shape_kind
-    float radius;      // m
-    ty_vec3 size;      // m
-    float height;      // m
-    float tube;        // m
-    float thickness;   // m, wall of a bowl
-    float foot_radius; // m
-    float foot_height; // m
-    float curve;       // bowl profile: 1 = cone, 2 = parabola, higher = fuller
-    float rounding;    // m
-    float relief;      // of a stone, against its size, 0..0.5
-    int variant;       // which stone
-    int divisions;     // around; the other direction follows the shape, 8..4096
+    int kind;              // ty_shape_kind
+    float radius;          // m
+    ty_vec3 size;          // m
+    float height;          // m
+    float tube;            // m
+    float thickness;       // m, wall of a bowl
+    float foot_radius;     // m
+    float foot_height;     // m
+    float curve;           // bowl profile: 1 = cone, 2 = parabola, higher = fuller
+    float rounding;        // m
+    float relief;          // of a stone, against its size, 0..0.5
+    int variant;           // which stone
+    ty_param_list profile; // of ty_shape_point, borrowed: from the axis to the axis, or back to the first, it is closed
+    int divisions;         // around; the other direction follows the shape, 8..4096
 } ty_shape_def;
 
 ty_shape_def ty_shape_def_default(void);
@@ -46,8 +55,8 @@ const ty_param_table* ty_shape_params(void);
 TY_CHECKED ty_status ty_shape_create(const ty_shape_def* def, ty_mesh** out, ty_error* error);
 
 // Signed distance (negative inside) to the *interior* of a vessel: the space to be filled. For BOWL the hollow below
-// the rim; for the closed solids the solid itself; open shapes and stones have none: TY_FLOAT_MAX. Exact or a lower
-// bound of the distance inside, 1-Lipschitz. A bowl has no wall above its rim: there the distance is to the lip,
+// the rim; for the closed solids the solid itself; open shapes, stones and lathes have none: TY_FLOAT_MAX. Exact or a
+// lower bound of the distance inside, 1-Lipschitz. A bowl has no wall above its rim: there the distance is to the lip,
 // negative within the rim's radius and positive beyond, and jumps between. def must be one that ty_shape_create
 // accepts. Any thread.
 float ty_shape_interior_distance(const ty_shape_def* def, ty_vec3 p);
