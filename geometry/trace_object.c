@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Objects of a world: adding and clearing them, and what their instances refer to.
 #include "trace_world.h"
+#include <string.h>
 #include <tsuya/base/memory.h>
 
 static void free_object(ty_trace_object* object)
@@ -46,6 +47,8 @@ static ty_status append(ty_world* world, ty_trace_object* added, ty_motion motio
     ty_status status = ty_trace_refine_motion(motion, &added->steps, &added->step_count, error);
     if (status != TY_OK)
         return status;
+    ty_affine identity = ty_affine_identity();
+    added->is_identity = added->step_count == 1 && memcmp(&added->steps[0], &identity, sizeof identity) == 0;
     added->index = world->object_count;
     added->first = world->instance_count;
     added->closed_subsurface = flags.closed_subsurface;
@@ -140,11 +143,22 @@ const ty_mesh* ty_world_mesh(const ty_world* world, uint32_t object, uint32_t in
     return world->prototypes[ty_world_prototype(world, object, instance)].mesh;
 }
 
+const ty_affine* ty_trace_to_world(const ty_trace_object* object, uint32_t instance, float time, ty_affine* scratch)
+{
+    if (object->aggregate && object->is_identity)
+        return &object->aggregate->transforms[instance];
+    if (!object->aggregate && object->step_count == 1)
+        return &object->steps[0];
+    *scratch = ty_trace_map_at(object->steps, object->step_count, time);
+    if (object->aggregate)
+        *scratch = ty_affine_multiply(scratch, &object->aggregate->transforms[instance]);
+    return scratch;
+}
+
 ty_affine ty_world_to_world(const ty_world* world, uint32_t object, uint32_t instance, float time)
 {
-    const ty_trace_object* o = &world->objects[object];
-    ty_affine outer = ty_trace_map_at(o->steps, o->step_count, time);
-    return o->aggregate ? ty_affine_multiply(&outer, &o->aggregate->transforms[instance]) : outer;
+    ty_affine scratch;
+    return *ty_trace_to_world(&world->objects[object], instance, time, &scratch);
 }
 
 ty_affine ty_world_to_local(const ty_world* world, uint32_t object, uint32_t instance, float time)

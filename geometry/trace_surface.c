@@ -36,57 +36,70 @@ static float reach(const corners* c, const ty_affine* m)
     return ty_max(sum.x, ty_max(sum.y, sum.z));
 }
 
-// Normals go by the inverse transpose: the cofactors over the determinant, of which the sign alone matters. They stay
-// outward under a mirror.
+// Normals go by the inverse transpose: the cofactors over the determinant, of which the sign alone matters as long as
+// nothing underflows. They stay outward under a mirror.
 static ty_affine cofactors(const ty_affine* m)
 {
     ty_affine c = {ty_cross(m->y, m->z), ty_cross(m->z, m->x), ty_cross(m->x, m->y), {0, 0, 0}};
-    float scale = 1.0f / ty_dot(c.x, m->x);
+    float determinant = ty_dot(c.x, m->x);
+    float scale = fabsf(determinant) > 1e-12f ? copysignf(1.0f, determinant) : 1.0f / determinant;
     return (ty_affine){ty_mul(c.x, scale), ty_mul(c.y, scale), ty_mul(c.z, scale), {0, 0, 0}};
 }
 
-// The horizon of a triangle under the inverse transpose m of its map. In the prototype's space a direction w has
-// elevation n.(m^T w) / |m^T w|; the length is at most the root of Gershgorin's bound of m m^T, exact for a similarity.
-static float horizon_at(const ty_trace_prototype* prototype, uint32_t triangle, const ty_affine* m, float normal_length)
+// Not of unit length, but not too short for its square either.
+static ty_vec3 triangle_normal(const ty_vec3* positions, const uint32_t* v)
+{
+    ty_vec3 p = positions[v[0]], e1 = ty_sub(positions[v[1]], p), e2 = ty_sub(positions[v[2]], p);
+    ty_vec3 n = ty_cross(e1, e2);
+    return ty_length_sqr(n) > 1e-24f ? n : ty_normalize(ty_cross(ty_normalize(e1), ty_normalize(e2)));
+}
+
+// The horizon of a triangle under any multiple m of the inverse transpose of its map; n is the normal before, length
+// after it. In the prototype's space a direction w has elevation n.(m^T w) / |n| |m^T w|; the last is at most the root
+// of Gershgorin's bound of m m^T, exact for a similarity.
+static float horizon_at(const ty_trace_prototype* prototype, uint32_t triangle, const ty_affine* m, ty_vec3 n,
+                        float length)
 {
     if (!prototype->horizons || prototype->horizons[triangle] == 255)
         return 1.0f;
+    if (prototype->horizons[triangle] == 0)
+        return 0.0f;
     float xy = fabsf(ty_dot(m->x, m->y)), yz = fabsf(ty_dot(m->y, m->z)), zx = fabsf(ty_dot(m->z, m->x));
     float stretch_sqr =
         ty_max(ty_dot(m->x, m->x) + xy + zx, ty_max(ty_dot(m->y, m->y) + xy + yz, ty_dot(m->z, m->z) + yz + zx));
-    float sine = (float)prototype->horizons[triangle] * (1.0f / TY_HORIZON_STEPS);
-    return ty_min(sine * sqrtf(stretch_sqr) * 1.00001f / normal_length, 1.0f);
+    float sine = (float)prototype->horizons[triangle] * (1.00001f / TY_HORIZON_STEPS);
+    return ty_min(sine * sqrtf(stretch_sqr * ty_length_sqr(n)) / length, 1.0f);
 }
 
 void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point* out)
 {
-    const ty_trace_prototype* prototype = &world->prototypes[ty_world_prototype(world, hit->object, hit->instance)];
+    const ty_trace_object* object = &world->objects[hit->object];
+    const ty_trace_prototype* prototype = &world->prototypes[ty_trace_prototype_of(object, hit->instance)];
     const ty_mesh* mesh = prototype->mesh;
-    ty_affine to_world = ty_world_to_world(world, hit->object, hit->instance, hit->time);
+    ty_affine scratch;
+    const ty_affine* to_world = ty_trace_to_world(object, hit->instance, hit->time, &scratch);
     corners c = corners_of(mesh, hit->triangle, hit->u, hit->v);
-    ty_vec3 p0 = mesh->positions[c.v[0]];
-    ty_vec3 e1 = ty_sub(mesh->positions[c.v[1]], p0), e2 = ty_sub(mesh->positions[c.v[2]], p0);
-    ty_affine m = cofactors(&to_world);
-    ty_vec3 mapped = ty_map_vector(&m, ty_normalize(ty_cross(ty_normalize(e1), ty_normalize(e2))));
+    ty_affine m = cofactors(to_world);
+    ty_vec3 n = triangle_normal(mesh->positions, c.v), mapped = ty_map_vector(&m, n);
     float length = ty_length(mapped);
     ty_vec3 ng = length > 0.0f ? ty_mul(mapped, 1.0f / length) : mapped;
-    ty_vec3 ns = ty_normalize(ty_map_vector(&m, ty_normalize(blend3(&c, mesh->normals))));
+    ty_vec3 ns = ty_normalize(ty_map_vector(&m, blend3(&c, mesh->normals)));
     float side = ty_dot(ns, ng);
     if (side < 0.0f)
         ns = ty_neg(ns);
     else if (side == 0.0f)
         ns = ng;
-    *out = (ty_surface_point){.position = ty_map_point(&to_world, blend3(&c, mesh->positions)),
+    *out = (ty_surface_point){.position = ty_map_point(to_world, blend3(&c, mesh->positions)),
                               .ng = ng,
                               .ns = ns,
-                              .reach = reach(&c, &to_world),
+                              .reach = reach(&c, to_world),
                               .object = hit->object,
                               .instance = hit->instance,
                               .triangle = hit->triangle,
                               .u = hit->u,
                               .v = hit->v,
                               .time = hit->time,
-                              .horizon = horizon_at(prototype, hit->triangle, &m, length)};
+                              .horizon = horizon_at(prototype, hit->triangle, &m, n, length)};
     if (mesh->uvs)
     {
         ty_vec2 a = mesh->uvs[c.v[0]], b = mesh->uvs[c.v[1]], d = mesh->uvs[c.v[2]];

@@ -29,6 +29,7 @@ typedef struct ty_trace_object
     uint32_t* prototypes;          // the world's index of each of the aggregate's; owned; plain: one
     ty_affine* steps;              // owned
     int step_count;                // 1 = at rest
+    bool is_identity;              // at rest where the aggregate's transforms put it
     bool closed_subsurface;
     uint32_t mask;
     ty_trace_wide* wide; // a moving aggregate's instances in its own space; owned
@@ -77,6 +78,8 @@ void ty_trace_free_objects(ty_world* world);
 uint32_t ty_trace_prototype_of(const ty_trace_object* object, uint32_t instance);
 // An instance within its object, before the object's own map.
 ty_affine ty_trace_inner_map(const ty_trace_object* object, uint32_t instance);
+// Prototype to world, where it lies or in scratch: a copy just written costs more to read than a hit's arithmetic.
+const ty_affine* ty_trace_to_world(const ty_trace_object* object, uint32_t instance, float time, ty_affine* scratch);
 // The object that holds an instance of the world's numbering.
 const ty_trace_object* ty_trace_object_of(const ty_world* world, uint32_t instance);
 
