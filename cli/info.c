@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `tsuya info`: what a file holds: pictures (with the scene that made them), aggregates, meshes, images.
+// `tsuya info`: what a file holds: pictures (with the scene that made them), aggregates, glTF scenes, meshes, images.
 #include "cli.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +7,7 @@
 #include <tsuya/base/file.h>
 #include <tsuya/base/log.h>
 #include <tsuya/geometry/aggregate.h>
+#include <tsuya/geometry/gltf.h>
 #include <tsuya/geometry/mesh_file.h>
 #include <tsuya/image/image.h>
 
@@ -125,6 +126,97 @@ static ty_status info_aggregate(const char* path, bool recipe, json_t** out, ty_
     return TY_OK;
 }
 
+static json_t* bounds_json(ty_bounds b)
+{
+    return json_pack("{s:[f, f, f], s:[f, f, f]}", "low", (double)b.low.x, (double)b.low.y, (double)b.low.z, "high",
+                     (double)b.high.x, (double)b.high.y, (double)b.high.z);
+}
+
+static json_t* gltf_meshes_json(const ty_gltf_scene* scene)
+{
+    json_t* meshes = json_array();
+    for (int i = 0; i < scene->mesh_count; i++)
+    {
+        const ty_mesh* mesh = scene->meshes[i];
+        if (!mesh)
+        {
+            continue;
+        }
+        json_t* attributes = json_array();
+        for (int k = 0; k < mesh->attribute_count; k++)
+        {
+            json_array_append_new(attributes, json_string(mesh->attributes[k].name));
+        }
+        json_t* slots = json_array();
+        for (int k = 0; k < mesh->slot_count; k++)
+        {
+            json_array_append_new(slots, json_string(mesh->slot_names[k]));
+        }
+        json_array_append_new(meshes,
+                              json_pack("{s:s, s:i, s:i, s:b, s:o, s:o}", "name", scene->mesh_names[i], "vertices",
+                                        (int)mesh->vertex_count, "triangles", (int)mesh->triangle_count, "uv",
+                                        mesh->uvs != NULL, "attributes", attributes, "materials", slots));
+    }
+    return meshes;
+}
+
+static json_t* gltf_json(const ty_gltf_scene* scene)
+{
+    static const char* const kinds[] = {"point", "spot", "directional"};
+    json_t *objects = json_array(), *materials = json_array(), *cameras = json_array(), *lights = json_array();
+    json_t* warnings = json_array();
+    for (int i = 0; i < scene->object_count; i++)
+    {
+        const ty_gltf_object* o = &scene->objects[i];
+        json_array_append_new(objects, json_pack("{s:s, s:s, s:i}", "name", o->name, "mesh", scene->mesh_names[o->mesh],
+                                                 "instances", o->instances ? (int)o->instances->instance_count : 1));
+    }
+    for (int i = 0; i < scene->material_count; i++)
+    {
+        json_array_append_new(materials, json_string(scene->materials[i].name));
+    }
+    for (int i = 0; i < scene->camera_count; i++)
+    {
+        json_array_append_new(cameras, json_string(scene->cameras[i].name));
+    }
+    for (int i = 0; i < scene->light_count; i++)
+    {
+        const ty_gltf_light* l = &scene->lights[i];
+        json_array_append_new(lights, json_pack("{s:s, s:s, s:f}", "name", l->name, "type", kinds[l->kind], "intensity",
+                                                (double)l->intensity));
+    }
+    for (int i = 0; i < scene->warning_count; i++)
+    {
+        json_array_append_new(warnings, json_string(scene->warnings[i]));
+    }
+    return json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:i, s:o, s:o}", "type", "gltf", "meshes", gltf_meshes_json(scene),
+                     "objects", objects, "materials", materials, "cameras", cameras, "lights", lights, "images",
+                     scene->image_count, "bounds", bounds_json(scene->bounds), "left_out", warnings);
+}
+
+static ty_status info_gltf(const char* path, bool recipe, json_t** out, ty_error* error)
+{
+    ty_gltf_scene* scene;
+    ty_status status = ty_gltf_scene_open(path, NULL, NULL, &scene, error);
+    if (status != TY_OK)
+    {
+        return status;
+    }
+    bool is_aggregate = scene->is_aggregate;
+    if (is_aggregate || recipe)
+    {
+        ty_gltf_scene_destroy(scene);
+        return info_aggregate(path, recipe, out, error);
+    }
+    status = ty_gltf_scene_read_meshes(scene, error);
+    if (status == TY_OK)
+    {
+        *out = gltf_json(scene);
+    }
+    ty_gltf_scene_destroy(scene);
+    return status;
+}
+
 static ty_status info_mesh(const char* path, bool recipe, json_t** out, ty_error* error)
 {
     ty_mesh* mesh;
@@ -187,9 +279,9 @@ static ty_status read_info(const char* path, bool recipe, json_t** out, ty_error
 {
     static const char* const meshes[] = {"ply", "obj", "stl", "fbx", "dae", "off", NULL};
     const char* extension = ty_path_extension(path);
-    if (strcmp(extension, "glb") == 0)
+    if (strcmp(extension, "glb") == 0 || strcmp(extension, "gltf") == 0)
     {
-        return info_aggregate(path, recipe, out, error);
+        return info_gltf(path, recipe, out, error);
     }
     if (strcmp(extension, "exr") == 0)
     {

@@ -258,6 +258,10 @@ static void name_meshes(const reader* r)
     {
         char name[128];
         ty_gltf_copy_name(json_array_get(meshes, (size_t)i), name);
+        const json_t* primitives = json_object_get(json_array_get(meshes, (size_t)i), "primitives");
+        for (size_t k = 0; k < json_array_size(primitives); k++)
+            scene->has_colors |=
+                json_object_get(json_object_get(json_array_get(primitives, k), "attributes"), "COLOR_0") != NULL;
         scene->mesh_names[i] = ty_arena_string(arena, name[0] ? name : ty_arena_format(arena, "mesh%d", i));
     }
 }

@@ -86,6 +86,8 @@ static ty_status read_all(ty_gltf_scene* scene, const void* bytes, size_t size, 
     if (status != TY_OK)
         return status;
     warn_ignored(scene);
+    const json_t* extras = json_object_get(json_object_get(scene->source->root, "asset"), "extras");
+    scene->is_aggregate = json_object_get(extras, "tsuya") != NULL;
     status = ty_gltf_read_look(scene, error);
     return status == TY_OK ? ty_gltf_read_nodes(scene, error) : status;
 }

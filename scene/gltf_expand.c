@@ -6,7 +6,6 @@
 #include "number.h"
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <tsuya/base/log.h>
 
 #define DEGREES (180.0f / TY_PI) // of a radian
@@ -72,12 +71,6 @@ static bool find_file(void* context, const char* uri, char path[4096], ty_error*
     return found != NULL;
 }
 
-static bool is_gltf(const char* path)
-{
-    const char* extension = ty_path_extension(path);
-    return strcasecmp(extension, "glb") == 0 || strcasecmp(extension, "gltf") == 0;
-}
-
 static void open_file(ty_loader* loader, ty_node* name, ty_asset* asset)
 {
     char folder[TY_PATH_MAX];
@@ -111,7 +104,7 @@ static void open_all(ty_loader* loader)
         loader->assets[i].name = ty_arena_string(loader->arena, map->keys[i].text);
         if (gltf && gltf->kind == TY_NODE_SCALAR)
             open_file(loader, gltf, &loader->assets[i]);
-        else if (mesh && mesh->kind == TY_NODE_SCALAR && is_gltf(mesh->text))
+        else if (mesh && mesh->kind == TY_NODE_SCALAR && ty_gltf_is_file(mesh->text))
             open_file(loader, mesh, &loader->assets[i]);
     }
 }
@@ -171,7 +164,10 @@ static char* camera_text(const ty_gltf_scene* gltf, const ty_gltf_camera* camera
         distance = ty_dot(ty_sub(ty_map_point(object, middle), map.t), view);
     }
     ty_text text = {0};
-    ty_text_format(&text, "{\"vfov\": %.9g", (double)ty_clamp(camera->yfov * DEGREES, 0.01f, 179.0f));
+    if (camera->is_orthographic)
+        ty_text_format(&text, "{\"projection\": \"orthographic\", \"ortho_height\": %.9g", (double)camera->height);
+    else
+        ty_text_format(&text, "{\"vfov\": %.9g", (double)ty_clamp(camera->yfov * DEGREES, 0.01f, 179.0f));
     add_vector(&text, "position", map.t);
     add_vector(&text, "look_at", ty_mad(map.t, view, distance > 1e-3f ? distance : 1.0f));
     add_vector(&text, "up", up);
@@ -246,8 +242,6 @@ static void bring_camera(ty_loader* loader, const ty_node* object, const ty_asse
     const ty_node* own = ty_node_get(loader->root, "camera");
     if (!camera || (own && !ty_node_is_empty(own)))
         return;
-    if (camera->is_orthographic)
-        ty_report_warning(wish->place, "camera '%s' is orthographic", camera->name);
     char* text = camera_text(asset->gltf, camera, map);
     ty_node *made = ty_made_node(loader, wish->place, text), *section = NULL;
     ty_free(text);

@@ -222,11 +222,14 @@ void ty_load_assets(ty_loader* loader);
 // scene_textures.c: textures of materials. Indices are the same for equal ones, -1 after a report. is_data: numbers,
 // not colours.
 int ty_surface_texture_of_asset(ty_loader* loader, int asset, const ty_node* name, bool is_data);
-int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data);
+int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data, int wrap); // wrap -1 = not said
 void ty_load_surface_textures(ty_loader* loader); // after the assets: recipes make frames
 void ty_set_texture_times(ty_loader* loader);     // to the scene's seconds
 // gltf_expand.c: glTF files that assets name, opened; their cameras and lights into the tree where objects ask for them
 void ty_gltf_expand(ty_loader* loader);
+// gltf_text.c: a scene of a glTF file alone, with light and a camera where it has none
+bool ty_gltf_is_file(const char* path); // by extension
+TY_CHECKED ty_status ty_gltf_scene_text(const char* path, ty_text* out, ty_error_list* errors);
 // gltf_material.c: a glTF material as a mapping of the tree; NULL after a report
 ty_node* ty_gltf_material_node(ty_loader* loader, const ty_asset* asset, int index);
 // Text that this program made, as nodes that messages place at `place`.

@@ -107,41 +107,41 @@ static bool read_factor(ty_reader* reader, const ty_node* map, const char* key, 
     return !node || ty_param_read_number(reader, node, &row, out);
 }
 
+// Nothing is as good as a name.
+static bool is_name(ty_reader* reader, const ty_node* node, const char* key)
+{
+    const ty_param named = {.name = key, .type = TY_PARAM_STRING, .unit = ""};
+    if (!node || (node->kind == TY_NODE_SCALAR && node->text[0]))
+        return true;
+    ty_param_report_type(reader, node, &named);
+    return false;
+}
+
 static bool read_input_source(ty_reader* reader, ty_node* node, const ty_param* row, ty_input* out)
 {
     ty_node *texture = ty_node_get(node, "texture"), *attribute = ty_node_get(node, "attribute");
-    ty_node* name = texture ? texture : attribute;
-    if (texture && attribute)
-    {
-        ty_report(reader->errors, attribute->place, TY_BAD_INPUT, "'%s': either a texture or an attribute, not both",
-                  row->name);
-        return false;
-    }
-    if (!name || !reader->find_texture)
+    if ((!texture && !attribute) || !reader->find_texture)
     {
         ty_param_report_type(reader, node, row);
         return false;
     }
-    if (name->kind != TY_NODE_SCALAR || !name->text[0])
-    {
-        const ty_param named = {.name = texture ? "texture" : "attribute", .type = TY_PARAM_STRING, .unit = ""};
-        ty_param_report_type(reader, name, &named);
+    if (!is_name(reader, texture, "texture") || !is_name(reader, attribute, "attribute"))
         return false;
-    }
-    const char* text = name->text;
     if (texture)
     {
-        if (!ty_param_read_mapping(reader, node, out))
+        int wrap = -1;
+        if (!ty_param_read_mapping(reader, node, out, &wrap))
             return false;
-        out->texture = text;
+        out->texture = texture->text;
         out->texture_index = reader->find_texture(reader->context, texture, row->type != TY_PARAM_COLOR_INPUT,
-                                                  out->mapping == TY_MAPPING_UV);
-        return out->texture_index >= 0;
+                                                  out->mapping == TY_MAPPING_UV, wrap);
+        if (out->texture_index < 0 || !attribute)
+            return out->texture_index >= 0;
     }
     static const char* const keys[] = {"attribute", "value", "scale", "offset", NULL};
-    if (!ty_params_check_keys(reader, node, keys, "an attribute"))
+    if (!texture && !ty_params_check_keys(reader, node, keys, "an attribute"))
         return false;
-    out->attribute = text;
+    out->attribute = attribute->text;
     out->attribute_index = reader->find_attribute(reader->context, attribute);
     return out->attribute_index >= 0;
 }
@@ -149,7 +149,7 @@ static bool read_input_source(ty_reader* reader, ty_node* node, const ty_param* 
 bool ty_param_read_input(ty_reader* reader, ty_node* node, const ty_param* row, ty_input* out)
 {
     static const char* const keys[] = {"texture", "attribute", "value", "scale", "offset", "mapping",
-                                       "uv",      "channel",   "size",  "blend", NULL};
+                                       "uv",      "channel",   "size",  "blend", "wrap",   NULL};
     *out = ty_input_scalar(1.0f);
     bool is_color = row->type == TY_PARAM_COLOR_INPUT;
     if (is_color && (node->kind != TY_NODE_MAP || ty_node_find(node, "color") >= 0))

@@ -3,6 +3,7 @@
 #include "params_read.h"
 
 static const char* const mappings[] = {"uv", "triplanar", NULL};
+static const char* const wraps[] = {"repeat", "clamp", "mirror", NULL};
 static const char* const channels[] = {"all", "r", "g", "b", "a", "luminance", NULL};
 
 typedef struct placement
@@ -60,7 +61,7 @@ static const ty_param rows[] = {
      .offset = offsetof(ty_input, blend)},
 };
 
-bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* input)
+bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* input, int* wrap)
 {
     bool good = true;
     for (int i = 0; i < TY_PARAM_COUNT(rows); ++i)
@@ -76,7 +77,10 @@ bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* inp
             good = false;
         }
     }
-    ty_node* uv = ty_node_get(node, "uv");
+    static const ty_param wrap_row = {.name = "wrap", .type = TY_PARAM_ENUM, .unit = "", .choices = wraps};
+    ty_node *uv = ty_node_get(node, "uv"), *said = ty_node_get(node, "wrap");
+    if (said)
+        good &= ty_param_read(reader, said, &wrap_row, wrap);
     placement place;
     if (!uv)
         return good;

@@ -142,6 +142,15 @@ ty_status ty_scene_load(const char* path, const ty_scene_options* options, ty_sc
     else
         ty_path_join(".", path, file);
     const char* shown = strncmp(file, "./", 2) == 0 ? file + 2 : file;
+    if (ty_gltf_is_file(shown))
+    {
+        ty_text text = {0};
+        ty_status status = ty_gltf_scene_text(shown, &text, errors);
+        if (status == TY_OK)
+            status = ty_scene_load_memory(shown, text.data, text.size, options, out, errors);
+        ty_text_term(&text);
+        return status;
+    }
     ty_path_folder(file, folder);
     int first = errors->count;
     ty_loader* loader = ty_loader_create(folder, options, errors);

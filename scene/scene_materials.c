@@ -5,15 +5,20 @@
 #include <string.h>
 
 // An asset of that name, else a file; a name without a dot or slash can only be meant as an asset.
-static int find_texture(void* context, ty_node* name, bool is_data, bool by_uv)
+static int find_texture(void* context, ty_node* name, bool is_data, bool by_uv, int wrap)
 {
     ty_loader* loader = context;
     loader->textured[loader->current_material] |= by_uv;
     int index = ty_node_find(loader->asset_map, name->text);
     if (index < 0 && !strpbrk(name->text, "./"))
         return ty_asset_find(loader, name);
+    if (index >= 0 && wrap >= 0)
+    {
+        ty_report(loader->errors, name->place, TY_BAD_INPUT, "'wrap' belongs to the asset '%.200s'", name->text);
+        return -1;
+    }
     return index >= 0 ? ty_surface_texture_of_asset(loader, index, name, is_data)
-                      : ty_surface_texture_of_file(loader, name, is_data);
+                      : ty_surface_texture_of_file(loader, name, is_data, wrap);
 }
 
 static int find_attribute(void* context, const ty_node* name)
@@ -34,6 +39,9 @@ static int find_attribute(void* context, const ty_node* name)
             scene->attribute_names = TY_ARENA_ALLOC(loader->arena, const char*, 256);
         scene->attribute_names[scene->attribute_count++] = ty_arena_string(loader->arena, name->text);
     }
+    // What glTF meshes have is theirs to say: where there are no vertex colours, they are white.
+    if (loader->current_material >= (loader->material_map ? loader->material_map->count : 0))
+        return index;
     for (int i = 0; i < loader->use_count; ++i) // read again for another frame
         if (loader->uses[i].material == loader->current_material && loader->uses[i].attribute == index)
             return index;

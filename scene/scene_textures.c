@@ -80,11 +80,13 @@ int ty_surface_texture_of_asset(ty_loader* loader, int asset_index, const ty_nod
     return index_of(loader, &texture);
 }
 
-int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data)
+int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data, int wrap)
 {
     ty_surface_texture texture = {.def = ty_mip_texture_def_default(), .place = name->place, .asset = -1};
     texture.def.color_space = space_for(NULL, is_data);
     texture.def.path = ty_files_use(&loader->files, name, "texture");
+    if (wrap >= 0)
+        texture.def.wrap = (ty_wrap)wrap;
     return texture.def.path ? index_of(loader, &texture) : -1;
 }
 

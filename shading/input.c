@@ -10,21 +10,39 @@ static ty_rgb vertex_value(const ty_mesh_attribute* attribute, const ty_shading_
     return attribute->components == 1 ? ty_rgb_grey(v[0]) : ty_rgb_make(v[0], v[1], v[2]);
 }
 
-// Attributes of instances come before those of vertices. 1 where there is neither.
-static ty_rgb attribute_factor(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)
+// Attributes of instances come before those of vertices. False where there is neither.
+static bool find_attribute(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point,
+                           ty_rgb* out)
 {
     const float* const* of_object = context->object_attributes ? context->object_attributes[point->object] : NULL;
     const float* values = of_object ? of_object[input->attribute_index] : NULL;
     if (values)
-        return ty_rgb_grey(input->offset + input->scale * values[point->instance]);
+    {
+        *out = ty_rgb_grey(values[point->instance]);
+        return true;
+    }
     if (!context->vertex_attributes)
-        return ty_rgb_grey(1.0f);
+        return false;
     uint32_t prototype = ty_world_prototype(context->world, point->object, point->instance);
     const ty_mesh_attribute* attribute = context->vertex_attributes[prototype][input->attribute_index];
-    if (!attribute)
+    if (attribute)
+        *out = vertex_value(attribute, context, point);
+    return attribute != NULL;
+}
+
+static ty_rgb attribute_factor(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)
+{
+    ty_rgb value;
+    if (!find_attribute(input, context, point, &value))
         return ty_rgb_grey(1.0f);
-    ty_rgb value = vertex_value(attribute, context, point);
     return ty_rgb_add(ty_rgb_grey(input->offset), ty_rgb_scale(value, input->scale));
+}
+
+// Beside a texture, which scale and offset are of.
+static ty_rgb plain_attribute(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)
+{
+    ty_rgb value;
+    return find_attribute(input, context, point, &value) ? value : ty_rgb_grey(1.0f);
 }
 
 ty_rgb ty_input_color(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)
@@ -32,7 +50,9 @@ ty_rgb ty_input_color(const ty_input* input, const ty_shading_context* context, 
     if (input->texture_index >= 0)
     {
         ty_rgb texel = ty_input_texel(input, context, point);
-        return ty_rgb_mul(input->value, ty_rgb_add(ty_rgb_grey(input->offset), ty_rgb_scale(texel, input->scale)));
+        texel = ty_rgb_add(ty_rgb_grey(input->offset), ty_rgb_scale(texel, input->scale));
+        ty_rgb value = ty_rgb_mul(input->value, texel);
+        return input->attribute_index < 0 ? value : ty_rgb_mul(value, plain_attribute(input, context, point));
     }
     if (input->attribute_index >= 0)
         return ty_rgb_mul(input->value, attribute_factor(input, context, point));

@@ -118,7 +118,8 @@ static void lights(void** state)
     fixture_one_error("tsuya: 1\nlights: [{ type: rectangle, size: [0, 1] }]\n", 2, 36, "'size' is 0: out of range");
     fixture_one_error("tsuya: 1\nlights: [{ type: sphere, radiance: -1 }]\n", 2, 36, "out of range");
     fixture_one_error("tsuya: 1\nlights: [{ type: point, radiance: 1 }]\n", 2, 25,
-                      "'radiance' means nothing for a point light, which has: name, type, group, intensity, power, color, exposure, center");
+                      "'radiance' means nothing for a point light, which has: name, type, group, intensity, power, "
+                      "color, exposure, center");
     fixture_one_error("tsuya: 1\nlights: [{ type: directional, target: [0, 1, 0] }]\n", 2, 39, "own center");
     fixture_one_error("tsuya: 1\nlights: [{ radiance: 1 }]\n", 2, 10, "missing key 'type' of light");
     fixture_one_error("tsuya: 1\nlights: [{ type: environment, image: sky.exr }]\n", 2, 38, "no file 'sky.exr'");
@@ -166,8 +167,8 @@ static void assets_and_materials(void** state)
     fixture_one_error("tsuya: 1\nmaterials: { m: { model: cdrf, kernel: gaussian } }\n", 2, 40, "kernel");
     fixture_one_error("tsuya: 1\nmaterials: { m: { model: surface, base_color: { texture: wod } } }\n", 2, 58,
                       "no asset 'wod'");
-    fixture_one_error("tsuya: 1\nmaterials: { m: { model: surface, base_color: { texture: a, attribute: b } } }\n", 2,
-                      72, "not both");
+    fixture_one_error("tsuya: 1\nmaterials: { m: { model: surface, base_color: { texture: a.png, wrap: round } } }\n",
+                      2, 71, "'wrap': 'round' is not one of");
     fixture_one_error("tsuya: 1\nmaterials: { m: { model: surface, base_color: { value: 1 } } }\n", 2, 47,
                       "'base_color': expected a colour");
 }

@@ -106,8 +106,10 @@ typedef struct ty_gltf_scene
     const char** mesh_names; // [mesh_count]
     const char** warnings;   // what is left out of this file, one sentence each
     int object_count, material_count, image_count, camera_count, light_count, mesh_count, warning_count;
-    ty_bounds bounds; // of the objects by what the accessors say of themselves; empty when they say nothing
-    ty_mesh** meshes; // [mesh_count], NULL before ty_gltf_scene_read_meshes and where no object shows it
+    bool is_aggregate; // a file of ty_aggregate_write
+    bool has_colors;   // some vertices have
+    ty_bounds bounds;  // of the objects by what the accessors say of themselves; empty when they say nothing
+    ty_mesh** meshes;  // [mesh_count], NULL before ty_gltf_scene_read_meshes and where no object shows it
     struct ty_gltf_source* source; // private
 } ty_gltf_scene;
 

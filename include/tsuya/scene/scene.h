@@ -279,7 +279,7 @@ typedef struct ty_scene_options
     ty_workers* workers; // for generators; NULL = the caller
 } ty_scene_options;
 
-// path: a scene file or a folder with scene.yaml. On failure *out is NULL and errors holds every mistake found.
+// path: a scene file, a folder with scene.yaml, or a glTF file, which gets light and a camera where it has none. On failure *out is NULL and errors holds every mistake found.
 TY_CHECKED ty_status ty_scene_load(const char* path, const ty_scene_options* options, ty_scene** out,
                                    ty_error_list* errors);
 // The same from memory, e.g. the recipe of a picture. name stands in messages; files are found from its folder.

@@ -106,7 +106,7 @@ typedef struct ty_shading_context
 
 // The value of an input at a point: value * (offset + scale * texel or attribute); value alone where neither is
 // present. An attribute is that of the instance, else that of the mesh's vertices: one component is grey, of two the
-// third is 0, a fourth is left out; a float takes the first.
+// third is 0, a fourth is left out; a float takes the first. Beside a texture it is a factor as it is.
 // Textures are averaged over the point's footprint.
 ty_rgb ty_input_color(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point);
 float ty_input_float(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point);
