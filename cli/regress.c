@@ -137,10 +137,10 @@ static void collect_limits(const ty_regression_limits* from, ty_regress_result* 
                                            from->psnr, from->max,    from->flip,    from->hdrflip};
     for (int m = 0; m < TY_METRIC_COUNT; m++)
     {
-        if (bounds[m] >= 0.0f)
+        bool rises = ty_metric_rises((ty_metric)m);
+        if (rises ? bounds[m] > 0.0f : bounds[m] < TY_REGRESSION_UNJUDGED)
         {
-            result->limits[result->limit_count++] =
-                (ty_limit){(ty_metric)m, (double)bounds[m], ty_metric_rises((ty_metric)m)};
+            result->limits[result->limit_count++] = (ty_limit){(ty_metric)m, (double)bounds[m], rises};
         }
     }
 }

@@ -8,8 +8,6 @@
 #include <tsuya/base/file.h>
 #include <tsuya/scene/regression.h>
 
-#define UNJUDGED (-1.0f)
-
 typedef struct regression_def
 {
     ty_regression_limits limits;
@@ -18,8 +16,14 @@ typedef struct regression_def
 
 static void limits_default(void* def)
 {
-    *(ty_regression_limits*)def =
-        (ty_regression_limits){UNJUDGED, UNJUDGED, UNJUDGED, UNJUDGED, UNJUDGED, UNJUDGED, UNJUDGED, UNJUDGED};
+    *(ty_regression_limits*)def = (ty_regression_limits){.rmse = TY_REGRESSION_UNJUDGED,
+                                                         .relmse = TY_REGRESSION_UNJUDGED,
+                                                         .trelmse = TY_REGRESSION_UNJUDGED,
+                                                         .mae = TY_REGRESSION_UNJUDGED,
+                                                         .psnr = 0.0f,
+                                                         .max = TY_REGRESSION_UNJUDGED,
+                                                         .flip = TY_REGRESSION_UNJUDGED,
+                                                         .hdrflip = TY_REGRESSION_UNJUDGED};
 }
 
 static void case_default(void* def)
@@ -158,19 +162,27 @@ static void finish_reference(regression_reader* in, const ty_node* node, ty_regr
 
 static void finish_limits(const ty_regression_limits* common, ty_regression_limits* own)
 {
+    ty_regression_limits silent;
+    limits_default(&silent);
     for (int i = 0; i < TY_PARAM_COUNT(limit_rows); i++)
     {
-        float* value = (float*)((char*)own + limit_rows[i].offset);
-        if (*value < 0.0f)
-            *value = *(const float*)((const char*)common + limit_rows[i].offset);
+        size_t at = limit_rows[i].offset;
+        float* value = (float*)((char*)own + at);
+        if (*value == *(const float*)((const char*)&silent + at))
+            *value = *(const float*)((const char*)common + at);
     }
 }
 
 static bool judges_something(const ty_regression_limits* limits)
 {
+    ty_regression_limits silent;
+    limits_default(&silent);
     for (int i = 0; i < TY_PARAM_COUNT(limit_rows); i++)
-        if (*(const float*)((const char*)limits + limit_rows[i].offset) >= 0.0f)
+    {
+        size_t at = limit_rows[i].offset;
+        if (*(const float*)((const char*)limits + at) != *(const float*)((const char*)&silent + at))
             return true;
+    }
     return false;
 }
 

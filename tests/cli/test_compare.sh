@@ -111,3 +111,10 @@ expect 4 "$tsuya" compare a.exr b.exr --html nowhere/report.html
 head -c 300 a.exr >cut.exr
 expect 4 "$tsuya" compare a.exr cut.exr
 says "cut.exr"
+
+# Without its module the program says what is missing, where that is needed; elsewhere it works.
+mkdir -p far/away/alone
+cp "$tsuya" far/away/alone/
+expect 4 far/away/alone/tsuya compare a.png b.png
+says "the program's module for image files cannot be loaded: libtsuya_oiio.so"
+expect 0 far/away/alone/tsuya compare a.exr b.exr

@@ -4,7 +4,10 @@
 #include <tsuya/base/arena.h>
 #include <tsuya/base/params.h>
 
-// Largest errors that pass, by metric (image/metrics.h); negative = not judged. psnr is a smallest value.
+#define TY_REGRESSION_UNJUDGED 1e30f
+
+// Largest errors that pass, by metric (image/metrics.h); TY_REGRESSION_UNJUDGED = any. psnr is a smallest value, 0 =
+// any.
 typedef struct ty_regression_limits
 {
     float rmse, relmse, trelmse, mae, psnr, max, flip, hdrflip;
