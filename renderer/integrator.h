@@ -17,9 +17,9 @@ typedef struct ty_integrator
     ty_pixel_filter filter;
     ty_light_set lights;
     ty_sobol sobol;
-    bool has_transparent; // something light goes straight through
-    bool has_media;       // clear bodies
-    ty_media media;       // those the camera is in
+    bool has_transparent;     // something light goes straight through
+    bool has_media;           // clear bodies
+    ty_media media;           // those the camera is in
     uint32_t* first_instance; // by object: number of its instance 0, from 1 over the whole scene; owned
 } ty_integrator;
 

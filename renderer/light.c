@@ -89,6 +89,9 @@ void ty_light_set_init(ty_light_set* set, const ty_scene* scene, bool grouped)
     for (int i = 0; i < scene->light_count; ++i)
         add_lights(set, i, grouped);
     ty_light_meshes_init(set);
+    for (int o = 0; o < scene->object_count; ++o)
+        set->restricted |=
+            set->first_mesh[o] != TY_NONE && ((scene->objects[o].mask & TY_MASK_SEEN) | TY_MASK_CAMERA) != TY_MASK_SEEN;
     ty_bounds bounds = ty_world_bounds(scene->world);
     float radius = 0.5f * ty_length(ty_sub(bounds.high, bounds.low));
     add_selections(set, isfinite(radius) && radius > 0.0f ? radius : 1.0f);
@@ -159,6 +162,7 @@ bool ty_light_set_sample(const ty_light_set* set, const ty_light_point* at, floa
         if (!ty_light_mesh_sample(set, mesh, at, rest, u, out))
             return false;
         out->group = ty_light_set_object_group(set, mesh->object);
+        out->visible = set->scene->objects[mesh->object].mask & TY_MASK_SEEN;
     }
     else
     {
@@ -176,11 +180,10 @@ bool ty_light_set_sample(const ty_light_set* set, const ty_light_point* at, floa
 // --- what rays meet ---
 
 // Share of a light that a ray met, where light sampling has a density of its own for the direction; 0 = it has none.
-static float weight(const ty_light_set* set, int emitter, const ty_light_view* view, float pdf)
+// view_pdf: of the ray's direction, by the kinds of lobes that the light is visible to.
+static float balance(const ty_light_set* set, int emitter, const ty_light_view* view, float view_pdf, float pdf)
 {
-    if (view->full)
-        return 1.0f;
-    float other = ty_light_select_probability(set, &view->from, emitter) * pdf;
+    float other = pdf > 0.0f ? ty_light_select_probability(set, &view->from, emitter) * pdf : 0.0f;
     switch ((ty_light_sampling)set->scene->render.light_sampling)
     {
     case TY_LIGHT_SAMPLING_LIGHT:
@@ -190,7 +193,42 @@ static float weight(const ty_light_set* set, int emitter, const ty_light_view* v
     case TY_LIGHT_SAMPLING_MIS:
         break;
     }
-    return ty_power_heuristic(view->pdf, other);
+    return ty_power_heuristic(view_pdf, other);
+}
+
+ty_rgb ty_light_parts_value(const ty_bsdf_parts* parts, unsigned mask, float* pdf)
+{
+    ty_rgb f = {0};
+    *pdf = 0.0f;
+    for (int k = 0; k < 3; ++k)
+        if (mask & ((unsigned)TY_MASK_DIFFUSE << k))
+        {
+            f = ty_rgb_add(f, parts->f[k]);
+            *pdf += parts->pdf[k];
+        }
+    return f;
+}
+
+static float ratio(float a, float b)
+{
+    return b > 0.0f ? a / b : 0.0f;
+}
+
+// Factor of the light that a ray brings from an emitter visible to a mask of rays, the ray's own kind among them. The
+// ray's throughput has all lobes over all their densities: what a restricted light is due is those that see it.
+static ty_rgb share(const ty_light_set* set, int emitter, unsigned visible, const ty_light_view* view, float pdf)
+{
+    if (view->full)
+        return ty_rgb_grey(1.0f);
+    if (!set->restricted || (visible | TY_MASK_CAMERA) == TY_MASK_SEEN)
+        return ty_rgb_grey(balance(set, emitter, view, view->pdf, pdf));
+    float seen_pdf, all_pdf;
+    ty_rgb seen = ty_light_parts_value(&view->parts, visible, &seen_pdf),
+           all = ty_light_parts_value(&view->parts, ~0u, &all_pdf);
+    if (!(seen_pdf > 0.0f))
+        return (ty_rgb){0};
+    float factor = balance(set, emitter, view, seen_pdf, pdf) * ratio(all_pdf, seen_pdf);
+    return ty_rgb_scale((ty_rgb){ratio(seen.r, all.r), ratio(seen.g, all.g), ratio(seen.b, all.b)}, factor);
 }
 
 static bool shape_meet(const ty_light* light, const ty_ray* ray, float* t)
@@ -234,8 +272,11 @@ static bool shape_along(const ty_light_set* set, int index, const ty_ray* ray, f
         return false;
     if (!out)
         return true;
-    float w = view->full ? 1.0f : weight(set, index, view, shape_pdf(light, view->from.position, ray->direction));
-    ty_film_sample_add(out, light->group, ty_rgb_scale(ty_rgb_mul(beta, light->value), w));
+    ty_rgb due = ty_rgb_mul(beta, light->value);
+    if (!view->full)
+        due = ty_rgb_mul(
+            due, share(set, index, light->visible, view, shape_pdf(light, view->from.position, ray->direction)));
+    ty_film_sample_add(out, light->group, due);
     return true;
 }
 
@@ -285,18 +326,22 @@ static ty_rgb sky_along(const ty_light_set* set, int index, const ty_ray* ray, c
     const ty_light* light = &set->lights[index];
     if (!(light->visible & view->seen))
         return (ty_rgb){0};
+    ty_rgb radiance = light->value;
+    float pdf = 0.0f;
     if (light->kind == TY_LIGHT_SKY)
-        return ty_light_sky_radiance(light, ray->direction);
-    if (light->kind == TY_LIGHT_DIRECTIONAL)
+        radiance = ty_light_sky_radiance(light, ray->direction);
+    else if (light->kind == TY_LIGHT_ENVIRONMENT)
     {
-        if (!ty_light_directional_covers(light, ray->direction))
-            return (ty_rgb){0};
-        return ty_rgb_scale(light->value, weight(set, index, view, ty_light_directional_pdf(light)));
+        radiance = ty_light_environment_radiance(light, ray->direction);
+        pdf = light->distribution && !view->full ? ty_light_environment_pdf(light, ray->direction) : 0.0f;
     }
-    ty_rgb radiance = ty_light_environment_radiance(light, ray->direction);
-    if (view->full || !light->distribution)
+    else if (ty_light_directional_covers(light, ray->direction))
+        pdf = ty_light_directional_pdf(light);
+    else
+        return (ty_rgb){0};
+    if (!(pdf > 0.0f) && !set->restricted)
         return radiance;
-    return ty_rgb_scale(radiance, weight(set, index, view, ty_light_environment_pdf(light, ray->direction)));
+    return ty_rgb_mul(radiance, share(set, index, light->visible, view, pdf));
 }
 
 bool ty_light_set_along(const ty_light_set* set, const ty_ray* ray, float t, const ty_light_view* view, ty_rgb beta,
@@ -323,18 +368,17 @@ bool ty_light_set_shines(const ty_light_set* set, const ty_ray* ray, const ty_li
     return s->shape_count > 0 && shapes_along(set, s, ray, TY_FLOAT_MAX, view, one, NULL);
 }
 
-float ty_light_set_weight(const ty_light_set* set, const ty_surface_point* met, const ty_light_view* view, ty_vec3 wi)
+ty_rgb ty_light_set_weight(const ty_light_set* set, const ty_surface_point* met, const ty_light_view* view, ty_vec3 wi)
 {
     const ty_scene* scene = set->scene;
     if (view->from.link && !scene->light_links[view->from.link][scene->light_count + (int)met->object])
-        return 0.0f;
-    if (view->full)
-        return 1.0f;
+        return (ty_rgb){0};
     uint32_t first = set->first_mesh[met->object];
-    if (first == TY_NONE)
-        return 1.0f;
+    if (view->full || first == TY_NONE)
+        return ty_rgb_grey(1.0f);
     int mesh = (int)(first + met->instance);
-    return weight(set, set->light_count + mesh, view, ty_light_mesh_pdf(set, &set->meshes[mesh], &view->from, met, wi));
+    return share(set, set->light_count + mesh, scene->objects[met->object].mask, view,
+                 ty_light_mesh_pdf(set, &set->meshes[mesh], &view->from, met, wi));
 }
 
 int ty_light_set_object_group(const ty_light_set* set, uint32_t object)

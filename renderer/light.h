@@ -92,7 +92,7 @@ typedef struct ty_light_set
     int mesh_tree_count;
     ty_light_selection* selections; // by link
     int selection_count;
-    bool restricted; // some light is not visible to everything
+    bool restricted; // some light is not visible to every kind of scattering
     bool grouped;    // the film has light groups
 } ty_light_set;
 
@@ -108,6 +108,7 @@ typedef struct ty_light_view
     bool full;           // no light sampling competed: camera rays and mirror reflections
     bool done;           // all light along the ray has been counted already, but for what surfaces emit
     unsigned seen;       // ty_mask of the ray
+    ty_bsdf_parts parts; // of the direction, where the set is restricted and view is not full
 } ty_light_view;
 
 void ty_light_set_init(ty_light_set* set, const ty_scene* scene, bool grouped);
@@ -125,8 +126,11 @@ bool ty_light_set_along(const ty_light_set* set, const ty_ray* ray, float t, con
 bool ty_light_set_shines(const ty_light_set* set, const ty_ray* ray, const ty_light_view* view);
 
 // Share that is due to a surface's own emission met by a ray of that view at the point.
-float ty_light_set_weight(const ty_light_set* set, const ty_surface_point* met, const ty_light_view* view, ty_vec3 wi);
+ty_rgb ty_light_set_weight(const ty_light_set* set, const ty_surface_point* met, const ty_light_view* view, ty_vec3 wi);
 int ty_light_set_object_group(const ty_light_set* set, uint32_t object); // -1 = nobody asks
+
+// Sums over the kinds of lobes in a ty_mask.
+ty_rgb ty_light_parts_value(const ty_bsdf_parts* parts, unsigned mask, float* pdf);
 
 // Weight of the technique with density a where the other has b (Veach 1997, exponent 2), in a form that cannot
 // overflow.

@@ -55,6 +55,7 @@ static ty_light_node triangle_leaf(const ty_mesh* mesh, uint32_t triangle, float
                            .high = ty_max3(a, ty_max3(b, c)),
                            .axis = ty_normalize(n),
                            .cos_o = 1.0f,
+                           .mean = ty_normalize(n),
                            .child = triangle};
 }
 
@@ -216,6 +217,7 @@ bool ty_light_mesh_leaf(const ty_light_set* set, const ty_light_mesh* mesh, ty_l
     bool flat = root->cos_o > 0.9999999f;
     if (steps > 1 || (!flat && !is_similarity(&to_world)))
         return true;
+    out->mean = ty_mul(ty_normalize(ty_map_transpose(&to_local, root->mean)), ty_length(root->mean));
     out->axis = ty_normalize(ty_map_transpose(&to_local, root->axis));
     out->cos_o = root->cos_o;
     return true;
@@ -242,6 +244,15 @@ static float area_of(const ty_light_set* set, const ty_light_mesh* mesh, const t
     return 0.5f * ty_length(ty_cross(e1, e2));
 }
 
+// What a path would find there: where the surface lets through it emits nothing.
+static ty_rgb emitted(const ty_scene* scene, const ty_material* material, const ty_surface_point* point, ty_vec3 wi)
+{
+    ty_rgb emission = ty_material_emission(material, &scene->shading, point);
+    if (!(ty_material_traits(material) & TY_TRAIT_TRANSPARENT))
+        return emission;
+    return ty_rgb_scale(emission, ty_material_transparency(material, &scene->shading, point, ty_neg(wi)).opacity);
+}
+
 bool ty_light_mesh_sample(const ty_light_set* set, const ty_light_mesh* mesh, const ty_light_point* at, double choice,
                           ty_vec2 u, ty_light_sample* out)
 {
@@ -264,7 +275,7 @@ bool ty_light_mesh_sample(const ty_light_set* set, const ty_light_mesh* mesh, co
     if (!(cosine > 0.0f) || !(out->distance > 0.0f))
         return false;
     const ty_material* material = ty_scene_material(scene, mesh->object, mesh->instance, hit.triangle);
-    out->radiance = ty_material_emission(material, &scene->shading, &point);
+    out->radiance = emitted(scene, material, &point, out->wi);
     out->pdf = probability * distance_sqr / (cosine * area_of(set, mesh, &to_world, hit.triangle));
     out->delta = false;
     return out->pdf > 0.0f && isfinite(out->pdf);

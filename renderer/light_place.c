@@ -80,7 +80,9 @@ bool ty_light_leaf(const ty_light_set* set, int emitter, ty_light_node* out)
                            .axis = flat || cone ? light->frame.n : ty_vec3_make(0.0f, 0.0f, 1.0f),
                            .cos_o = flat || cone ? 1.0f : -1.0f,
                            .cos_e = cone ? ty_max(light->cos_outer, 0.0f) : 0.0f,
-                           .energy = intensity(light)};
+                           .energy = intensity(light),
+                           .even = flat || cone ? 0.0f : 1.0f,
+                           .mean = flat || cone ? light->frame.n : (ty_vec3){0}};
     return true;
 }
 

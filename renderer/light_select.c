@@ -7,6 +7,7 @@
 enum
 {
     FEW = 4,       // up to so many, choosing by power costs less than looking where they are
+    LINEAR = 16,   // up to so many, counting up costs less than bisecting
     FEW_SHAPES = 8 // up to so many, a ray is tried against each
 };
 
@@ -72,10 +73,11 @@ static void list_met(ty_light_selection* s, const ty_light_set* set, const bool*
 void ty_light_selection_init(ty_light_selection* s, const ty_light_set* set, const bool* lit, float scene_radius)
 {
     int emitters = set->light_count + set->mesh_count, leaf_count = 0;
-    bool few = count_lit(set, lit, scene_radius) <= FEW;
+    int lit_count = count_lit(set, lit, scene_radius);
+    bool few = lit_count <= FEW || set->scene->render.light_choice == TY_LIGHT_CHOICE_POWER;
     *s = (ty_light_selection){.probability = TY_ALLOC(float, emitters)};
-    s->chosen = TY_ALLOC(int, few ? FEW : set->light_count);
-    s->cumulative = TY_ALLOC(float, few ? FEW : set->light_count);
+    s->chosen = TY_ALLOC(int, few ? lit_count : set->light_count);
+    s->cumulative = TY_ALLOC(float, few ? lit_count : set->light_count);
     list_met(s, set, lit);
     ty_light_node* leaves = TY_ALLOC(ty_light_node, emitters);
     for (int i = 0; i < emitters; ++i)
@@ -109,11 +111,29 @@ void ty_light_selection_term(ty_light_selection* s)
     ty_light_tree_destroy(s->shaping);
 }
 
+// The first of 0 .. last whose cumulative value is above u; last if there is none.
+static int bisect(const float* cumulative, int last, double u)
+{
+    int low = 0, high = last;
+    while (low < high)
+    {
+        int middle = (low + high) / 2;
+        if (u >= (double)cumulative[middle])
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 static int choose_of_table(const ty_light_selection* s, double u, float* probability, double* rest)
 {
-    int i = 0;
-    while (i < s->chosen_count - 1 && u >= (double)s->cumulative[i])
-        ++i;
+    int i = 0, last = s->chosen_count - 1;
+    if (last < LINEAR)
+        while (i < last && u >= (double)s->cumulative[i])
+            ++i;
+    else
+        i = bisect(s->cumulative, last, u);
     double before = i ? (double)s->cumulative[i - 1] : 0.0, width = (double)s->cumulative[i] - before;
     *rest = width > 0.0 ? (u - before) / width : 0.5;
     *rest = *rest < 0.0 ? 0.0 : *rest < 1.0 ? *rest : (double)TY_ONE_MINUS_EPSILON;

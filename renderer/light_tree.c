@@ -69,6 +69,9 @@ static ty_light_node join(const ty_light_node* a, const ty_light_node* b)
         return *a;
     ty_light_node out = {
         .low = ty_min3(a->low, b->low), .high = ty_max3(a->high, b->high), .energy = a->energy + b->energy};
+    float share = out.energy > 0.0f ? a->energy / out.energy : 0.5f;
+    out.even = ty_lerp(b->even, a->even, share);
+    out.mean = ty_lerp3(b->mean, a->mean, share);
     join_cones(a, b, &out);
     return out;
 }
@@ -225,33 +228,41 @@ void ty_light_tree_destroy(ty_light_tree* tree)
 
 // --- choosing ---
 
+// Mean of max(0, c) over what is spread around c.
+static float mean_positive(float c, float spread_sqr)
+{
+    return 0.5f * (c + sqrtf(c * c + spread_sqr));
+}
+
+// Whether a node whose box fills the half angle b may send light along w, and a surface take it.
+static bool may_shine(const ty_light_node* node, ty_vec3 w, ty_vec3 normal, float sin_b, float cos_b)
+{
+    float cos_i = -ty_dot(normal, w);
+    if (ty_length_sqr(normal) > 0.0f && !(cos_sub_clamped(sine_of(cos_i), cos_i, sin_b, cos_b) > 0.0f))
+        return false;
+    if (node->cos_o <= -1.0f)
+        return true;
+    // Least angle between a direction to p and a normal: the angle to the axis less both half angles.
+    float cos_w = ty_dot(node->axis, w), sin_w = sine_of(cos_w), sin_o = sine_of(node->cos_o);
+    float cos_x = cos_sub_clamped(sin_w, cos_w, sin_o, node->cos_o);
+    float sin_x = sin_sub_clamped(sin_w, cos_w, sin_o, node->cos_o);
+    return cos_sub_clamped(sin_x, cos_x, sin_b, cos_b) > node->cos_e;
+}
+
 float ty_light_node_importance(const ty_light_node* node, ty_vec3 p, ty_vec3 normal)
 {
     ty_vec3 to = ty_sub(p, ty_mul(ty_add(node->low, node->high), 0.5f));
     float d_sqr = ty_length_sqr(to), r_sqr = 0.25f * ty_length_sqr(ty_sub(node->high, node->low));
-    if (d_sqr <= r_sqr * 1.0001f)
-        return node->energy / ty_max(r_sqr, 1e-12f);
-    ty_vec3 w = ty_mul(to, 1.0f / sqrtf(d_sqr));
-    float sin_b_sqr = r_sqr / d_sqr, sin_b = sqrtf(sin_b_sqr), cos_b = sqrtf(1.0f - sin_b_sqr);
-    float importance = node->energy / d_sqr;
-    if (node->cos_o > -1.0f)
-    {
-        // Least angle between a direction to p and a normal: the angle to the axis less both half angles.
-        float cos_w = ty_dot(node->axis, w), sin_w = sine_of(cos_w), sin_o = sine_of(node->cos_o);
-        float cos_x = cos_sub_clamped(sin_w, cos_w, sin_o, node->cos_o);
-        float sin_x = sin_sub_clamped(sin_w, cos_w, sin_o, node->cos_o);
-        float cos_least = cos_sub_clamped(sin_x, cos_x, sin_b, cos_b);
-        if (cos_least <= node->cos_e)
-            return 0.0f;
-        importance *= cos_least;
-    }
-    if (ty_length_sqr(normal) > 0.0f)
-    {
-        float cos_i = -ty_dot(normal, w);
-        float cos_least = cos_sub_clamped(sine_of(cos_i), cos_i, sin_b, cos_b);
-        importance *= ty_max(cos_least, 0.0f);
-    }
-    return importance;
+    ty_vec3 w = ty_mul(to, 1.0f / sqrtf(ty_max(d_sqr, 1e-30f)));
+    float sin_b_sqr = d_sqr > r_sqr ? r_sqr / d_sqr : 1.0f;
+    if (d_sqr > r_sqr * 1.0001f && !may_shine(node, w, normal, sqrtf(sin_b_sqr), sqrtf(1.0f - sin_b_sqr)))
+        return 0.0f;
+    // Normals all over the sphere have a mean of zero and a quarter of them shines; those of one side, their cosine.
+    float rest = 1.0f - node->even, along = ty_dot(node->mean, w);
+    float facing = node->even + mean_positive(along, 0.25f * ty_max(rest * rest - ty_length_sqr(node->mean), 0.0f));
+    float taken = ty_length_sqr(normal) > 0.0f ? mean_positive(-ty_dot(normal, w), 0.25f * sin_b_sqr) : 1.0f;
+    // Never nothing where something may come: a spread as wide as rounding.
+    return node->energy * ty_max(facing, 1e-3f) * ty_max(taken, 1e-3f) / ty_max(ty_max(d_sqr, 0.2f * r_sqr), 1e-12f);
 }
 
 int ty_light_tree_sample(const ty_light_tree* tree, ty_vec3 p, ty_vec3 normal, double* u, float* probability)

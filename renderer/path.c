@@ -28,9 +28,8 @@ static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sa
         ty_media_cross(&p->media, &p->body, p->entering);
     ty_bsdf_spawn(bsdf, sample->wi, u, &p->ray);
     ty_cone_scatter(in, bsdf, sample, &p->cone);
-    p->ray.mask = sample->transmitted ? TY_MASK_TRANSMISSION : sample->delta ? TY_MASK_GLOSSY : TY_MASK_DIFFUSE;
-    p->view = (ty_light_view){
-        .from = ty_path_light_point(in, bsdf), .pdf = sample->pdf, .full = sample->delta, .seen = p->ray.mask};
+    p->ray.mask = sample->kind;
+    p->view = ty_path_view(in, bsdf, sample);
     return true;
 }
 
@@ -215,9 +214,9 @@ static void begin(const ty_integrator* in, const ty_ray* ray, ty_path* p)
 
 static void add_emission(const ty_integrator* in, const ty_bsdf* bsdf, const ty_path* p, ty_film_sample* out)
 {
-    float weight = ty_light_set_weight(&in->lights, &bsdf->point, &p->view, p->ray.direction);
+    ty_rgb weight = ty_light_set_weight(&in->lights, &bsdf->point, &p->view, p->ray.direction);
     ty_path_add(in, p->indirect, ty_light_set_object_group(&in->lights, bsdf->point.object),
-                ty_rgb_scale(ty_rgb_mul(p->beta, bsdf->emission), weight), out);
+                ty_rgb_mul(ty_rgb_mul(p->beta, bsdf->emission), weight), out);
 }
 
 void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray ray, ty_counters* counters,

@@ -25,6 +25,9 @@ typedef struct ty_path
 // Where a surface gathers light, for choosing a light there.
 ty_light_point ty_path_light_point(const ty_integrator* in, const ty_bsdf* bsdf);
 
+// The ray that leaves it towards a sampled direction.
+ty_light_view ty_path_view(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample);
+
 // One light sample at a surface, times beta to out. u: two for the light's surface, one to choose it, one for the ray's
 // start.
 void ty_path_direct_light(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const float u[4], ty_rgb beta,

@@ -17,6 +17,15 @@ ty_light_point ty_path_light_point(const ty_integrator* in, const ty_bsdf* bsdf)
                             in->scene->objects[bsdf->point.object].light_link};
 }
 
+ty_light_view ty_path_view(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample)
+{
+    ty_light_view view = {
+        .from = ty_path_light_point(in, bsdf), .pdf = sample->pdf, .full = sample->delta, .seen = sample->kind};
+    if (in->lights.restricted && !sample->delta)
+        view.parts = ty_bsdf_eval_parts(bsdf, sample->wi);
+    return view;
+}
+
 // Weight of a light's sample against the surface's own sampling of its direction.
 static float sample_weight(const ty_integrator* in, const ty_light_sample* light, float pdf)
 {
@@ -32,6 +41,15 @@ static float sample_weight(const ty_integrator* in, const ty_light_sample* light
         break;
     }
     return ty_power_heuristic(light->pdf, pdf);
+}
+
+// f |cos| of the lobes that see the light, and their density.
+static ty_rgb visible_value(const ty_bsdf* bsdf, const ty_light_sample* light, float* pdf)
+{
+    if ((light->visible | TY_MASK_CAMERA) == TY_MASK_SEEN)
+        return ty_bsdf_eval(bsdf, light->wi, pdf);
+    ty_bsdf_parts parts = ty_bsdf_eval_parts(bsdf, light->wi);
+    return ty_light_parts_value(&parts, light->visible, pdf);
 }
 
 void ty_path_add(const ty_integrator* in, bool indirect, int group, ty_rgb light, ty_film_sample* out)
@@ -59,7 +77,7 @@ void ty_path_direct_light(const ty_integrator* in, const ty_path* p, const ty_bs
     if (ty_bsdf_is_delta(bsdf) || !ty_light_set_sample(&in->lights, &at, u[2], (ty_vec2){u[0], u[1]}, &light))
         return;
     float pdf = 0.0f;
-    ty_rgb value = ty_rgb_mul(ty_bsdf_eval(bsdf, light.wi, &pdf), light.radiance);
+    ty_rgb value = ty_rgb_mul(visible_value(bsdf, &light, &pdf), light.radiance);
     float weight = sample_weight(in, &light, pdf) / light.pdf;
     if (ty_rgb_is_black(value) || !(weight > 0.0f))
         return;
@@ -93,8 +111,7 @@ static bool look_through(const ty_scene* scene, const ty_hit* hit, ty_ray* ray, 
 void ty_path_light_along(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const ty_bsdf_sample* sample,
                          float u, ty_rgb beta, ty_film_sample* out, ty_counters* counters)
 {
-    ty_light_view view = {
-        .from = ty_path_light_point(in, bsdf), .pdf = sample->pdf, .full = sample->delta, .seen = TY_MASK_GLOSSY};
+    ty_light_view view = ty_path_view(in, bsdf, sample);
     ty_ray ray;
     ty_bsdf_spawn(bsdf, sample->wi, u, &ray);
     ray.mask = TY_MASK_GLOSSY;

@@ -28,7 +28,7 @@ ty_light_def ty_light_def_default(void)
                           .sun_elevation = ty_radians(40.0f),
                           .sun_angle = ty_radians(0.53f),
                           .camera_visible = true,
-                          .visible = {true, true, true, true},
+                          .visible = {true, true, true, true, true},
                           .shadows = true};
 }
 
@@ -39,7 +39,7 @@ static void light_default(void* def)
 
 static void visible_default(void* def)
 {
-    *(ty_visible_def*)def = (ty_visible_def){true, true, true, true};
+    *(ty_visible_def*)def = (ty_visible_def){true, true, true, true, true};
 }
 
 static const char* const kinds[] = {"environment", "sky",   "rectangle", "disk",        "sphere",
@@ -54,12 +54,10 @@ static const ty_param visible_rows[] = {
      "through transmitting surfaces", false},
 };
 
-static const ty_param_table visible_table = {"visible",
-                                             "Which rays see a light: those of the camera, or of a kind of scattering.",
-                                             sizeof(ty_visible_def),
-                                             visible_default,
-                                             visible_rows,
-                                             TY_PARAM_COUNT(visible_rows)};
+static const ty_param_table visible_table = {
+    "light.visible",        "Which rays see a light: those of the camera, or of a kind of scattering.",
+    sizeof(ty_visible_def), visible_default,
+    visible_rows,           TY_PARAM_COUNT(visible_rows)};
 
 #define AT(field) offsetof(ty_light_def, field)
 
@@ -122,11 +120,6 @@ static const ty_param_table table = {
 const ty_param_table* ty_light_params(void)
 {
     return &table;
-}
-
-const ty_param_table* ty_visible_params(void)
-{
-    return &visible_table;
 }
 
 static bool is_among(const char* key, const char* const* keys)

@@ -4,7 +4,12 @@
 
 static void object_default(void* def)
 {
-    *(ty_object_def*)def = (ty_object_def){.scale = {1.0f, 1.0f, 1.0f}};
+    *(ty_object_def*)def = (ty_object_def){.scale = {1.0f, 1.0f, 1.0f}, .visible = {true, true, true, true, true}};
+}
+
+static void visible_default(void* def)
+{
+    *(ty_visible_def*)def = (ty_visible_def){true, true, true, true, true};
 }
 
 static void mesh_default(void* def)
@@ -34,6 +39,22 @@ static void aggregate_default(void* def)
     *(ty_aggregate_asset_def*)def = (ty_aggregate_asset_def){0};
 }
 
+static const ty_param visible_rows[] = {
+    {"camera", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_visible_def, camera), "by the camera itself", false},
+    {"diffuse", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_visible_def, diffuse),
+     "to rays that leave matt and translucent surfaces", false},
+    {"glossy", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_visible_def, glossy), "in reflections", false},
+    {"transmission", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_visible_def, transmission),
+     "through transmitting surfaces", false},
+    {"shadow", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_visible_def, shadow), "whether it casts shadows",
+     false},
+};
+
+static const ty_param_table visible_table = {
+    "object.visible",       "Which rays meet an object: those of the camera, of a kind of scattering, of shadows.",
+    sizeof(ty_visible_def), visible_default,
+    visible_rows,           TY_PARAM_COUNT(visible_rows)};
+
 static const ty_param object_rows[] = {
     {"name", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_object_def, name), "for messages, ids and --set",
      false},
@@ -56,6 +77,8 @@ static const ty_param object_rows[] = {
      "about x, then y, then z", false},
     {"scale", TY_PARAM_FLOAT3, "", -1e9, 1e9, NULL, NULL, offsetof(ty_object_def, scale),
      "applied first; one number for all three", false},
+    {"visible", TY_PARAM_GROUP, "", 0, 0, NULL, &visible_table, offsetof(ty_object_def, visible), "which rays meet it",
+     false},
     {"light_group", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_object_def, light_group),
      "light group of what its material emits", false},
     {"lights", TY_PARAM_STRINGS, "", 0, 0, NULL, NULL, offsetof(ty_object_def, lights),

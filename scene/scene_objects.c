@@ -141,6 +141,12 @@ static void check_keys(ty_loader* loader, const ty_node* node)
                       keys[i]);
 }
 
+static uint32_t mask_of(const ty_visible_def* v)
+{
+    return (v->camera ? TY_MASK_CAMERA : 0u) | (v->diffuse ? TY_MASK_DIFFUSE : 0u) | (v->glossy ? TY_MASK_GLOSSY : 0u) |
+           (v->transmission ? TY_MASK_TRANSMISSION : 0u) | (v->shadow ? TY_MASK_SHADOW : 0u);
+}
+
 // The definition to what it places, once that is known.
 static void set_placed(ty_loader* loader, const ty_object_entry* entry, const ty_node* node)
 {
@@ -150,6 +156,7 @@ static void set_placed(ty_loader* loader, const ty_object_entry* entry, const ty
         if (!loader->placed[i].part) // that one's are resolved by name
             loader->scene->objects[i].material = (uint32_t)entry->material;
         loader->scene->objects[i].light_group = group;
+        loader->scene->objects[i].mask = mask_of(&entry->def.visible);
     }
 }
 

@@ -52,6 +52,7 @@ static void turntable_default(void* def)
 
 static const char* const filters[] = {"box", "gaussian", "blackman_harris", NULL};
 static const char* const samplings[] = {"mis", "light", "bsdf", NULL};
+static const char* const light_choices[] = {"place", "power", NULL};
 static const char* const integrators[] = {"path", "albedo", "normal", "curvature", "ao", NULL};
 
 static const char* const turns[] = {"camera", "objects", NULL};
@@ -79,6 +80,8 @@ static const ty_param render_rows[] = {
      false},
     {"light_sampling", TY_PARAM_ENUM, "", 0, 0, samplings, NULL, offsetof(ty_render_def, light_sampling),
      "how light is found: by lights and surfaces together, or one alone, for comparison", false},
+    {"light_choice", TY_PARAM_ENUM, "", 0, 0, light_choices, NULL, offsetof(ty_render_def, light_choice),
+     "which of many lights is sampled: by place, direction and power, or by power alone, for comparison", false},
     {"texture_filter", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_render_def, texture_filter),
      "average textures over what a ray stands for; false = look them up at the point", false},
     {"indirect_clamp", TY_PARAM_FLOAT, "", 0, MANY, NULL, NULL, offsetof(ty_render_def, indirect_clamp),

@@ -15,7 +15,8 @@ typedef struct ty_object_def
     const char* material;
     ty_param_list materials;          // of ty_param_name: slot, material
     ty_vec3 translate, rotate, scale; // m, radians, 1
-    const char* light_group;          // of what it emits, NULL = "default"
+    ty_visible_def visible;
+    const char* light_group; // of what it emits, NULL = "default"
     ty_param_strings lights, exclude_lights;
 } ty_object_def;
 

@@ -129,7 +129,7 @@ static void warn_untextured(const ty_loader* loader, const ty_scene_object* obje
 static ty_object_flags object_flags(const ty_loader* loader, const ty_scene_object* object,
                                     const ty_placed_object* asset)
 {
-    ty_object_flags flags = {.mask = TY_MASK_OPAQUE};
+    ty_object_flags flags = {.mask = object->mask};
     for (uint32_t k = 0; k < ty_scene_material_count(object); ++k)
         flags.closed_subsurface |= ty_material_is_subsurface(loader->scene->materials[ty_scene_material_at(object, k)]);
     meshes all = meshes_of(asset);

@@ -73,6 +73,53 @@ ty_rgb ty_bsdf_eval(const ty_bsdf* bsdf, ty_vec3 wi_world, float* pdf)
     return eval_local(bsdf, wo, ty_to_local(bsdf->frame, wi_world), pdf);
 }
 
+// Towards a direction in the frame; what is no part of the others is glossy.
+static ty_bsdf_parts local_parts(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi)
+{
+    ty_bsdf_parts parts = {0};
+    float pdf;
+    ty_rgb f = eval_local(bsdf, wo, wi, &pdf);
+    if (bsdf->kind == TY_BSDF_SURFACE && wi.z < 0.0f)
+    {
+        parts.f[2] = f;
+        parts.pdf[2] = pdf;
+        return parts;
+    }
+    if (bsdf->kind == TY_BSDF_SURFACE)
+        parts.f[0] = ty_surface_eval_diffuse(bsdf, wo, wi, &parts.pdf[0]);
+    else if (bsdf->kind == TY_BSDF_CDRF_LOCAL)
+        parts.f[0] = ty_local_eval_diffuse(bsdf, wo, wi, &parts.pdf[0]);
+    else if (bsdf->kind == TY_BSDF_CDRF_EXIT)
+    {
+        parts.f[0] = f;
+        parts.pdf[0] = pdf;
+    }
+    parts.f[1] =
+        (ty_rgb){ty_max(f.r - parts.f[0].r, 0.0f), ty_max(f.g - parts.f[0].g, 0.0f), ty_max(f.b - parts.f[0].b, 0.0f)};
+    parts.pdf[1] = ty_max(pdf - parts.pdf[0], 0.0f);
+    return parts;
+}
+
+ty_bsdf_parts ty_bsdf_eval_parts(const ty_bsdf* bsdf, ty_vec3 wi)
+{
+    ty_vec3 wo = ty_to_local(bsdf->frame, bsdf->wo), local = ty_to_local(bsdf->frame, wi);
+    if (!bsdf->bent)
+        return local_parts(bsdf, wo, local);
+    bool above = is_above(bsdf, wi);
+    ty_vec3 image = ty_to_local(bsdf->frame, mirror_image(bsdf, wi));
+    ty_bsdf_parts parts = {0}, other = {0};
+    if ((local.z > 0.0f) == above)
+        parts = local_parts(bsdf, wo, local);
+    if ((image.z > 0.0f) == above)
+        other = local_parts(bsdf, wo, image);
+    for (int k = 0; k < 3; ++k)
+    {
+        parts.f[k] = ty_rgb_add(parts.f[k], other.f[k]);
+        parts.pdf[k] += other.pdf[k];
+    }
+    return parts;
+}
+
 // The direction that a lobe sent, on the side where it belongs, with the density of both ways to it.
 static bool straighten(const ty_bsdf* bsdf, ty_vec3 wo, ty_bsdf_sample* out)
 {

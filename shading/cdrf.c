@@ -155,11 +155,12 @@ bool ty_coat_sample(const ty_bsdf* b, ty_vec3 wo, ty_vec2 u, ty_bsdf_sample* out
 {
     if (b->coat_alpha == 0.0f)
     {
-        *out = (ty_bsdf_sample){.wi = ty_vec3_make(-wo.x, -wo.y, wo.z), .delta = true};
+        *out = (ty_bsdf_sample){.wi = ty_vec3_make(-wo.x, -wo.y, wo.z), .delta = true, .kind = TY_MASK_GLOSSY};
         out->weight = ty_rgb_grey(b->coat_weight * ty_fresnel(wo.z, b->coat_eta));
         return true;
     }
-    *out = (ty_bsdf_sample){.wi = ty_reflect(wo, ty_ggx_sample(wo, ty_ggx_round(b->coat_alpha), u))};
+    *out = (ty_bsdf_sample){.wi = ty_reflect(wo, ty_ggx_sample(wo, ty_ggx_round(b->coat_alpha), u)),
+                            .kind = TY_MASK_GLOSSY};
     ty_rgb f = ty_coat_eval(b, wo, out->wi, &out->pdf);
     if (out->pdf <= 0.0f)
         return false;
@@ -175,7 +176,7 @@ ty_rgb ty_exit_eval(const ty_bsdf* b, ty_vec3 wi, float* pdf)
 
 bool ty_exit_sample(const ty_bsdf* b, ty_vec2 u, ty_bsdf_sample* out)
 {
-    *out = (ty_bsdf_sample){.wi = ty_sample_cosine(u)};
+    *out = (ty_bsdf_sample){.wi = ty_sample_cosine(u), .kind = TY_MASK_DIFFUSE};
     ty_rgb f = ty_exit_eval(b, out->wi, &out->pdf);
     if (out->pdf <= 0.0f)
         return false;

@@ -62,15 +62,21 @@ static float response(const ty_bsdf* b, ty_vec3 wi)
     }
 }
 
-ty_rgb ty_local_eval(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
+// Refraction on the way in is left at its average: with it inside the convolution the furnace would need a normaliser
+// for each roughness, index and spread.
+ty_rgb ty_local_eval_diffuse(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
 {
     const float* p = b->lobe_probability;
-    // Refraction on the way in is left at its average: with it inside the convolution the furnace would need a
-    // normaliser for each roughness, index and spread.
-    float interior = (1.0f - ty_coat_albedo(b, wo.z)) * response(b, wi) * TY_INV_PI, coat_pdf;
-    ty_rgb f = ty_rgb_add(ty_rgb_scale(b->color, interior), ty_coat_eval(b, wo, wi, &coat_pdf));
-    *pdf = p[LOBE_COAT] * coat_pdf + p[LOBE_COSINE] * ty_max(wi.z, 0.0f) * TY_INV_PI +
-           p[LOBE_UNIFORM] * (0.25f * TY_INV_PI);
+    *pdf = p[LOBE_COSINE] * ty_max(wi.z, 0.0f) * TY_INV_PI + p[LOBE_UNIFORM] * (0.25f * TY_INV_PI);
+    return ty_rgb_scale(b->color, (1.0f - ty_coat_albedo(b, wo.z)) * response(b, wi) * TY_INV_PI);
+}
+
+ty_rgb ty_local_eval(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
+{
+    float interior_pdf, coat_pdf;
+    ty_rgb interior = ty_local_eval_diffuse(b, wo, wi, &interior_pdf);
+    ty_rgb f = ty_rgb_add(interior, ty_coat_eval(b, wo, wi, &coat_pdf));
+    *pdf = b->lobe_probability[LOBE_COAT] * coat_pdf + interior_pdf;
     return f;
 }
 
@@ -90,7 +96,7 @@ bool ty_local_sample(const ty_bsdf* b, ty_vec3 wo, float u_lobe, ty_vec2 u, ty_b
     else
     {
         bool cosine = u_lobe < p[LOBE_COAT] + p[LOBE_COSINE];
-        *out = (ty_bsdf_sample){.wi = cosine ? ty_sample_cosine(u) : ty_sample_sphere(u)};
+        *out = (ty_bsdf_sample){.wi = cosine ? ty_sample_cosine(u) : ty_sample_sphere(u), .kind = TY_MASK_DIFFUSE};
     }
     ty_rgb f = ty_local_eval(b, wo, out->wi, &out->pdf);
     if (out->pdf <= 0.0f)

@@ -6,6 +6,7 @@
 
 bool ty_surface_is_delta(const ty_bsdf* bsdf);
 ty_rgb ty_surface_eval(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf);
+ty_rgb ty_surface_eval_diffuse(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf); // its share of eval
 bool ty_surface_sample(const ty_bsdf* bsdf, ty_vec3 wo, float u_lobe, ty_vec2 u, ty_bsdf_sample* out);
 ty_rgb ty_surface_albedo(const ty_bsdf* bsdf);
 
@@ -20,6 +21,7 @@ bool ty_exit_sample(const ty_bsdf* bsdf, ty_vec2 u, ty_bsdf_sample* out);
 
 void ty_local_prepare(const ty_shading_context* context, ty_bsdf* bsdf); // lobe probabilities, second form
 ty_rgb ty_local_eval(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf);
+ty_rgb ty_local_eval_diffuse(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf); // eval without the coat
 bool ty_local_sample(const ty_bsdf* bsdf, ty_vec3 wo, float u_lobe, ty_vec2 u, ty_bsdf_sample* out);
 float ty_local_curvature(const ty_bsdf* bsdf, ty_vec3 wi); // 1/m, in the tangential direction of wi, >= 0
 

@@ -130,6 +130,16 @@ static float facet_transmits(const ty_bsdf* b, float cos_h)
     return p[TY_LOBE_SPECULAR] + p[TY_LOBE_TRANSMISSION] - facet_reflects(b, cos_h);
 }
 
+ty_rgb ty_surface_eval_diffuse(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
+{
+    *pdf = 0.0f;
+    if (!(b->lobe_probability[TY_LOBE_DIFFUSE] > 0.0f) || !(wi.z > 0.0f))
+        return ty_rgb_grey(0.0f);
+    float k = diffuse_coupling(b, wo.z, wi.z) * ty_surface_diffuse(b);
+    *pdf = b->lobe_probability[TY_LOBE_DIFFUSE] * wi.z * TY_INV_PI;
+    return ty_rgb_scale(b->diffuse, k * wi.z * TY_INV_PI);
+}
+
 static ty_rgb eval_reflection(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
 {
     const float* p = b->lobe_probability;
@@ -149,9 +159,9 @@ static ty_rgb eval_reflection(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* p
     }
     if (p[TY_LOBE_DIFFUSE] > 0.0f)
     {
-        float k = diffuse_coupling(b, wo.z, wi.z) * ty_surface_diffuse(b);
-        f = ty_rgb_add(f, ty_rgb_scale(b->diffuse, k * wi.z * TY_INV_PI));
-        *pdf += p[TY_LOBE_DIFFUSE] * wi.z * TY_INV_PI;
+        float diffuse_pdf;
+        f = ty_rgb_add(f, ty_surface_eval_diffuse(b, wo, wi, &diffuse_pdf));
+        *pdf += diffuse_pdf;
     }
     if (p[TY_LOBE_LOST_ABOVE] > 0.0f)
     {
@@ -207,7 +217,7 @@ ty_rgb ty_surface_eval(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
 static bool sample_delta(const ty_bsdf* b, ty_vec3 wo, int lobe, ty_bsdf_sample* out)
 {
     float probability = b->lobe_probability[lobe];
-    *out = (ty_bsdf_sample){.wi = ty_vec3_make(-wo.x, -wo.y, wo.z), .delta = true};
+    *out = (ty_bsdf_sample){.wi = ty_vec3_make(-wo.x, -wo.y, wo.z), .delta = true, .kind = TY_MASK_GLOSSY};
     if (lobe == TY_LOBE_COAT)
         out->weight = ty_rgb_grey(b->coat_weight * ty_fresnel(wo.z, b->coat_eta) / probability);
     else if (lobe == TY_LOBE_SPECULAR)
@@ -218,6 +228,7 @@ static bool sample_delta(const ty_bsdf* b, ty_vec3 wo, int lobe, ty_bsdf_sample*
         if (!ty_refract(wo, ty_vec3_make(0, 0, 1), b->eta, &out->wi))
             return false;
         out->transmitted = true;
+        out->kind = TY_MASK_TRANSMISSION;
         float coat = ty_surface_across_coat(b, wo.z, -out->wi.z);
         out->weight = ty_rgb_scale(ty_surface_transmittance(b, wo.z), coat / probability);
     }
@@ -295,6 +306,7 @@ bool ty_surface_sample(const ty_bsdf* b, ty_vec3 wo, float u_lobe, ty_vec2 u, ty
         return sample_delta(b, wo, lobe, out);
     *out = (ty_bsdf_sample){.wi = sample_lobe(b, wo, lobe, u_lobe, u)};
     out->transmitted = out->wi.z < 0.0f;
+    out->kind = out->transmitted ? TY_MASK_TRANSMISSION : lobe == TY_LOBE_DIFFUSE ? TY_MASK_DIFFUSE : TY_MASK_GLOSSY;
     if (out->wi.z == 0.0f)
         return false;
     ty_rgb f = ty_surface_eval(b, wo, out->wi, &out->pdf);

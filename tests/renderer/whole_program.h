@@ -34,7 +34,9 @@ static inline ty_exr* render_text(const char* text)
     ty_film_setup setup = {.size = {scene->film.size[0], scene->film.size[1]},
                            .crop = {0, 0, scene->film.size[0] - 1, scene->film.size[1] - 1},
                            .sample_end = scene->render.samples,
-                           .aovs = TY_AOV_ALL};
+                           .aovs = TY_AOV_ALL | (scene->light_group_count > 1 ? TY_AOV_LIGHT : 0u),
+                           .groups = scene->light_groups,
+                           .group_count = scene->light_group_count};
     ty_film* film;
     assert_int_equal(ty_film_create(&setup, &film, &error), TY_OK);
     ty_render_options render = {.sample_end = scene->render.samples};

@@ -83,6 +83,12 @@ typedef enum ty_light_sampling
     TY_LIGHT_SAMPLING_BSDF,  // of surfaces alone where it can be
 } ty_light_sampling;
 
+typedef enum ty_light_choice
+{
+    TY_LIGHT_CHOICE_PLACE, // by where they are, too, when there are many
+    TY_LIGHT_CHOICE_POWER,
+} ty_light_choice;
+
 typedef struct ty_render_def
 {
     int integrator;        // ty_integrator_kind
@@ -93,6 +99,7 @@ typedef struct ty_render_def
     ty_seed seed;          // of this frame, with animate_seed
     bool animate_seed;     // other noise in every frame
     int light_sampling;    // ty_light_sampling
+    int light_choice;      // ty_light_choice
     bool texture_filter;   // textures are averaged over what a ray stands for
     float ao_distance;     // m
     float curvature_scale; // m: curvature * scale is shown as grey around .5
@@ -140,6 +147,7 @@ typedef enum ty_light_kind
 typedef struct ty_visible_def
 {
     bool camera, diffuse, glossy, transmission;
+    bool shadow; // objects: whether they stop light
 } ty_visible_def;
 
 typedef struct ty_light_def
@@ -190,7 +198,6 @@ const ty_param_table* ty_render_params(void);
 const ty_param_table* ty_light_params(void);
 const ty_param_table* ty_timeline_params(void);
 const ty_param_table* ty_turntable_params(void);
-const ty_param_table* ty_visible_params(void);
 
 typedef struct ty_scene_object
 {
@@ -201,6 +208,7 @@ typedef struct ty_scene_object
     const float* const* attributes; // [attribute_count] -> [instances] or NULL
     const uint32_t* ids;            // [instances] from the aggregate file, or NULL
     uint32_t instance_count;
+    uint32_t mask;   // ty_mask: the rays that may meet it
     int light_group; // of what its material emits: index into the scene's light_groups
     int light_link;  // which lights light it: index into the scene's light_links
 } ty_scene_object;

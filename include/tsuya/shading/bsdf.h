@@ -86,7 +86,15 @@ typedef struct ty_bsdf_sample
     float pdf;     // per solid angle; of the whole bsdf, so that MIS can use it; 0 when delta
     bool delta;
     bool transmitted;
+    uint32_t kind; // TY_MASK_DIFFUSE, GLOSSY or TRANSMISSION: of the lobe that was sampled
 } ty_bsdf_sample;
+
+// f |cos| and density by kinds of lobes: diffuse, glossy, transmission.
+typedef struct ty_bsdf_parts
+{
+    ty_rgb f[3];
+    float pdf[3];
+} ty_bsdf_parts;
 
 // For cdrf `depth` and `probe`: decides between coat and interior, traces the interior, and turns bsdf into the lobe at
 // the point where light leaves. *weight multiplies the path. Others: nothing happens, weight 1. False = absorbed.
@@ -101,8 +109,9 @@ void ty_bsdf_take_coat(ty_bsdf* bsdf);
 bool ty_bsdf_take_interior(ty_bsdf* bsdf, const struct ty_shading_context* context, const float u[3], ty_rng* extra,
                            ty_rgb* weight);
 
-bool ty_bsdf_is_delta(const ty_bsdf* bsdf);                       // light sampling is pointless
-ty_rgb ty_bsdf_eval(const ty_bsdf* bsdf, ty_vec3 wi, float* pdf); // f |cos|, and the pdf sample would have
+bool ty_bsdf_is_delta(const ty_bsdf* bsdf);                        // light sampling is pointless
+ty_rgb ty_bsdf_eval(const ty_bsdf* bsdf, ty_vec3 wi, float* pdf);  // f |cos|, and the pdf sample would have
+ty_bsdf_parts ty_bsdf_eval_parts(const ty_bsdf* bsdf, ty_vec3 wi); // they add up to what eval says
 bool ty_bsdf_sample_wi(const ty_bsdf* bsdf, float u_lobe, ty_vec2 u, ty_bsdf_sample* out); // false = absorbed
 ty_rgb ty_bsdf_albedo(const ty_bsdf* bsdf); // for the albedo AOV, about 0..1
 
