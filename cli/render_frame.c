@@ -113,7 +113,7 @@ ty_status ty_render_frame(ty_render_job* job, const ty_scene* scene, ty_workers*
     job->write.sample_end = job->setup.sample_end;
     job->render.on_pass = on_pass;
     job->render.pass_context = job;
-    job->next_preview = 1.0;
+    job->next_preview = job->lists ? 10.0 : 1.0; // of many, only long ones
     ty_render_stats stats = {0};
     ty_status rendered = ty_render(scene, &job->render, workers, film, &stats, error);
     bool stopped = rendered == TY_INTERRUPTED || rendered == TY_TERMINATED;
