@@ -117,6 +117,8 @@ ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** ou
     m->surface = *def;
     m->anisotropic = !is_zero(&def->specular_roughness_anisotropy);
     m->bent = has_map(&def->normal, &def->bump);
+    m->matte = is_zero(&def->specular_weight) && is_zero(&def->base_metalness) && is_zero(&def->transmission_weight) &&
+               is_zero(&def->coat_weight) && !def->thin_walled;
     m->traits = surface_traits(def);
     make_surface_tables(m);
     *out = m;

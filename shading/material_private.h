@@ -21,6 +21,7 @@ struct ty_material
     ty_albedo_table* coat;     // E of the coat of `surface`, or of the specular reflection of `cdrf`
     bool anisotropic;          // the frame follows the texture's u
     bool bent;                 // a normal or bump map
+    bool matte;                // nothing but a diffuse base
     unsigned traits;           // ty_material_trait
     ty_loss_table* conductor;  // of the metal or sheet of `surface`, NULL where it has none or loses nothing
     ty_loss_table* dielectric; // of its clear boundary, likewise

@@ -223,6 +223,14 @@ static void prepare_boundary(const ty_material* material, const ty_shading_conte
     prepare_loss(material, roughness, b);
 }
 
+// One lobe, chosen always.
+static void prepare_matte(ty_bsdf* b)
+{
+    b->diffuse = b->color;
+    b->layer_average = 1.0f;
+    b->lobe_probability[TY_LOBE_DIFFUSE] = ty_rgb_is_black(b->color) ? 0.0f : 1.0f;
+}
+
 void ty_surface_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
 {
     const ty_surface_def* s = &material->surface;
@@ -230,6 +238,13 @@ void ty_surface_prepare(const ty_material* material, const ty_shading_context* c
     b->kind = TY_BSDF_SURFACE;
     b->thin = s->thin_walled;
     b->color = clamp_color(ty_input_color(&s->base_color, context, p));
+    if (b->entering)
+        b->emission = ty_material_emission(material, context, p);
+    if (material->matte)
+    {
+        prepare_matte(b);
+        return;
+    }
     b->specular_tint = clamp_color(ty_input_color(&s->specular_color, context, p));
     b->metalness = unit_input(&s->base_metalness, context, p);
     b->specular_weight = unit_input(&s->specular_weight, context, p);
@@ -238,8 +253,6 @@ void ty_surface_prepare(const ty_material* material, const ty_shading_context* c
     prepare_boundary(material, context, b);
     if (material->coat)
         prepare_coat(material, context, b);
-    if (b->entering)
-        b->emission = ty_material_emission(material, context, p);
     b->layer_average = layer_average(b);
     choose_probabilities(b, ty_dot(b->wo, b->frame.n));
 }

@@ -79,7 +79,7 @@ float ty_surface_across_coat(const ty_bsdf* b, float mu_o, float mu_i)
 
 float ty_surface_through_layers(const ty_bsdf* b, float mu)
 {
-    if (b->inside)
+    if (b->inside || !(b->coat_weight > 0.0f || b->specular_weight > 0.0f))
         return 1.0f;
     return (1.0f - ty_coat_albedo(b, mu)) * (1.0f - b->specular_weight * ty_albedo_row_at(&b->specular_row, mu));
 }
