@@ -157,6 +157,29 @@ static void test_checker_is_averaged(void** state)
     ty_mip_texture_destroy(texture);
 }
 
+static float stripes(int x, int y, int channel)
+{
+    return (float)((channel ? y : x) & 1);
+}
+
+// A footprint along a stripe sees that stripe alone, one across them their mean, whichever of du and dv is the longer.
+static void test_footprints_have_a_direction(void** state)
+{
+    (void)state;
+    ty_mip_texture* texture = open_image(write_image("stripes.exr", 64, 64, 3, stripes), "raw", TY_WRAP_REPEAT);
+    const ty_vec2 at = {20.5f / 64.0f, 31.5f / 64.0f}, u = {12.0f / 64.0f, 0.0f}, v = {0.0f, 12.0f / 64.0f};
+    for (int swap = 0; swap < 2; swap++)
+    {
+        ty_rgb along_u = ty_mip_texture_sample(texture, at, swap ? none : u, swap ? u : none).rgb;
+        ty_rgb along_v = ty_mip_texture_sample(texture, at, swap ? none : v, swap ? v : none).rgb;
+        assert_near(along_u.r, 0.5f, 1e-2f);
+        assert_near(along_u.g, 0.0f, 1e-3f);
+        assert_near(along_v.r, 0.0f, 1e-3f);
+        assert_near(along_v.g, 0.5f, 1e-2f);
+    }
+    ty_mip_texture_destroy(texture);
+}
+
 // Odd sides lose no texel: the mean of the whole image is what its last reduction holds.
 static float bumpy(int x, int y, int channel)
 {
@@ -236,6 +259,9 @@ static void test_spaces_and_channels(void** state)
     ty_mip_texture_destroy(texture);
     texture = open_image(write_image("rgba.exr", 2, 2, 4, four), "raw", TY_WRAP_REPEAT);
     assert_near(sample(texture, 0.5f, 0.5f), 1.0f, 0.0f);
+    ty_mip_texture* other = open_image(in_folder("rgba.exr"), "ACES2065-1", TY_WRAP_REPEAT); // the same file, otherwise
+    assert_true(sample(other, 0.5f, 0.5f) > 1.2f);
+    ty_mip_texture_destroy(other);
     ty_mip_texture_destroy(texture);
     texture = open_image(write_image("grey.exr", 2, 2, 1, four), NULL, TY_WRAP_REPEAT);
     texel = ty_mip_texture_sample(texture, (ty_vec2){0.5f, 0.5f}, none, none);
@@ -531,6 +557,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(test_ramp_and_constant_at_any_footprint),
         TEST(test_checker_is_averaged),
+        TEST(test_footprints_have_a_direction),
         TEST(test_last_level_is_the_mean),
         TEST(test_texels_and_wraps),
         TEST(test_spaces_and_channels),

@@ -16,7 +16,8 @@ enum
     SIDE = 64
 };
 
-// A scaled and turned sphere (object 0), a large triangle with uv in the plane y = 0 (object 1), both at rest.
+// A scaled and turned sphere (object 0), a large triangle with uv in the plane y = 0 (object 1), the sphere upright and
+// three times as large (2).
 typedef struct stage
 {
     ty_mesh *sphere, *floor;
@@ -107,8 +108,11 @@ static int setup(void** state)
         ty_affine_from_trs((ty_vec3){0.3f, 5.0f, 0.1f}, ty_quat_axis_angle((ty_vec3){0.6f, 0.0f, 0.8f}, 1.1f),
                            (ty_vec3){2.0f, 2.0f, 2.0f});
     ty_affine plain = ty_affine_identity();
+    ty_affine large =
+        ty_affine_from_trs((ty_vec3){0.0f, -10.0f, 0.0f}, ty_quat_identity(), (ty_vec3){3.0f, 3.0f, 3.0f});
     add_object(s, s->sphere, &turned);
     add_object(s, s->floor, &plain);
+    add_object(s, s->sphere, &large);
     assert_int_equal(ty_world_commit(s->world, NULL), TY_OK);
     s->context.world = s->world;
     s->context.textures = (const ty_mip_texture* const*)s->textures;
@@ -260,6 +264,29 @@ static void triplanar_has_no_seam(void** state)
     }
 }
 
+// From each of the four sides the texture runs to the right, and as long as the scene says on an object of any size.
+static void triplanar_is_not_mirrored(void** state)
+{
+    const stage* s = *state;
+    static const ty_vec3 sides[4] = {{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}};
+    const ty_vec3 center = {0.0f, -10.0f, 0.0f}, up = {0.0f, 1.0f, 0.0f};
+    ty_input input = textured(0);
+    input.mapping = TY_MAPPING_TRIPLANAR;
+    input.size = 2.0f;
+    for (int i = 0; i < 4; i++)
+    {
+        ty_vec3 right = ty_cross(up, sides[i]);
+        ty_vec3 d = ty_normalize(ty_mad(ty_mad(sides[i], right, 0.1f), up, 0.05f));
+        ty_ray ray = ty_ray_make(ty_mad(center, d, 5.0f), ty_neg(d), TY_FLOAT_MAX);
+        ty_hit hit;
+        ty_surface_point p;
+        assert_true(ty_world_intersect(s->world, &ray, &hit));
+        ty_world_surface(s->world, &hit, &p);
+        float u = ty_dot(ty_sub(p.position, center), right) / 2.0f;
+        assert_close(ty_input_float(&input, &s->context, &p), 0.5f + 0.4f * ty_sin(2.0f * TY_PI * u), 3e-3f);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -267,6 +294,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(footprints_are_averaged, setup, teardown),
         cmocka_unit_test_setup_teardown(triplanar_repeats_in_metres, setup, teardown),
         cmocka_unit_test_setup_teardown(triplanar_has_no_seam, setup, teardown),
+        cmocka_unit_test_setup_teardown(triplanar_is_not_mirrored, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
