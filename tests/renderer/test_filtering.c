@@ -97,7 +97,7 @@ static void checker_in_a_curved_mirror(void** state)
                       "  mirror: { model: surface, base_metalness: 1, base_color: 1, specular_roughness: 0 }\n",
                       "  - { mesh: ball, material: mirror, translate: [0, 1, 0] }\n"),
                 16, 512);
-    assert_true(c.filtered < 0.8 * c.unfiltered);
+    assert_true(c.filtered <= 1.3 * c.many);
     assert_true(fabs(c.bias) < 4e-3);
 }
 
