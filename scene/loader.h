@@ -82,7 +82,8 @@ typedef struct ty_placed_object
     ty_mesh* mesh;              // either of them once loaded
     ty_aggregate* aggregate;
     ty_object_flags flags;
-    bool flags_known; // found when the world was built first
+    bool flags_known;    // found when the world was built first
+    uint32_t built_mask; // as the world has it
 } ty_placed_object;
 
 // A texture of materials.
@@ -242,7 +243,8 @@ void ty_bind_objects(ty_loader* loader);
 // attributes, objects, trees, depth fields, the shading context
 void ty_build_attributes(ty_loader* loader);
 void ty_build_world(ty_loader* loader);
-void ty_rebuild_world(ty_loader* loader); // the same objects, where they stand now
+bool ty_world_is_stale(const ty_loader* loader); // objects moved, or are seen by others
+void ty_rebuild_world(ty_loader* loader);        // the same objects, where they stand now
 
 // scene_frame.c
 void ty_frame_begin(ty_loader* loader);      // the sections of time; the tree at the scene's frame

@@ -114,9 +114,15 @@ static void place_object(ty_loader* loader, const ty_node* node, ty_object_entry
                   "'scale': zero along an axis would make the object flat");
 }
 
+static uint32_t mask_of(const ty_visible_def* v)
+{
+    return (v->camera ? TY_MASK_CAMERA : 0u) | (v->diffuse ? TY_MASK_DIFFUSE : 0u) | (v->glossy ? TY_MASK_GLOSSY : 0u) |
+           (v->transmission ? TY_MASK_TRANSMISSION : 0u) | (v->shadow ? TY_MASK_SHADOW : 0u);
+}
+
 void ty_pose_object(ty_loader* loader, int index)
 {
-    static const char* const keys[] = {"translate", "rotate", "scale"};
+    static const char* const keys[] = {"translate", "rotate", "scale", "visible"};
     const ty_param_table* table = ty_object_params();
     const ty_node* node = ty_section(loader, "objects", TY_NODE_LIST)->items[index];
     ty_object_entry* entry = &loader->objects[index];
@@ -129,6 +135,8 @@ void ty_pose_object(ty_loader* loader, int index)
                                     (char*)&entry->def + table->params[i].offset);
         }
     place_object(loader, node, entry);
+    for (int i = entry->first; i < entry->first + entry->count; ++i)
+        loader->scene->objects[i].mask = mask_of(&entry->def.visible);
 }
 
 // What belongs to one kind of object alone.
@@ -139,12 +147,6 @@ static void check_keys(ty_loader* loader, const ty_node* node)
         if (ty_node_get(node, keys[i]) && !ty_node_get(node, "gltf"))
             ty_report(loader->errors, ty_node_get(node, keys[i])->place, TY_BAD_INPUT, "'%s' belongs to 'gltf'",
                       keys[i]);
-}
-
-static uint32_t mask_of(const ty_visible_def* v)
-{
-    return (v->camera ? TY_MASK_CAMERA : 0u) | (v->diffuse ? TY_MASK_DIFFUSE : 0u) | (v->glossy ? TY_MASK_GLOSSY : 0u) |
-           (v->transmission ? TY_MASK_TRANSMISSION : 0u) | (v->shadow ? TY_MASK_SHADOW : 0u);
 }
 
 // The definition to what it places, once that is known.

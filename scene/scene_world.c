@@ -129,7 +129,7 @@ static void warn_untextured(const ty_loader* loader, const ty_scene_object* obje
 static ty_object_flags object_flags(const ty_loader* loader, const ty_scene_object* object,
                                     const ty_placed_object* asset)
 {
-    ty_object_flags flags = {.mask = object->mask};
+    ty_object_flags flags = {0}; // the mask is looked at again for every frame
     for (uint32_t k = 0; k < ty_scene_material_count(object); ++k)
         flags.closed_subsurface |= ty_material_is_subsurface(loader->scene->materials[ty_scene_material_at(object, k)]);
     meshes all = meshes_of(asset);
@@ -155,8 +155,9 @@ static ty_motion object_motion(const ty_object_entry* entry, const ty_placed_obj
 }
 
 // Of those that shadow rays stop at; opacity may change from frame to frame.
-static uint32_t object_mask(const ty_scene* scene, const ty_scene_object* object, uint32_t mask)
+static uint32_t object_mask(const ty_scene* scene, const ty_scene_object* object)
 {
+    uint32_t mask = object->mask;
     for (uint32_t k = 0; k < ty_scene_material_count(object); ++k)
         if (ty_material_traits(scene->materials[ty_scene_material_at(object, k)]) & TY_TRAIT_TRANSPARENT)
             return (mask & ~(uint32_t)TY_MASK_SHADOW) | (mask & TY_MASK_SHADOW ? TY_MASK_SHADOW_TRANSPARENT : 0u);
@@ -173,7 +174,7 @@ static ty_status add_object(ty_loader* loader, int index, ty_error* error)
         placed->flags = object_flags(loader, &scene->objects[index], placed);
     placed->flags_known = true;
     ty_object_flags flags = placed->flags;
-    flags.mask = object_mask(scene, &scene->objects[index], flags.mask);
+    flags.mask = placed->built_mask = object_mask(scene, &scene->objects[index]);
     uint32_t number = 0, prototype = 0;
     ty_status status = TY_OK;
     if (placed->aggregate)
@@ -301,6 +302,14 @@ void ty_build_world(ty_loader* loader)
     }
     set_shading(loader);
     scene->build_seconds = ty_time_now() - start;
+}
+
+bool ty_world_is_stale(const ty_loader* loader)
+{
+    for (int i = 0; i < loader->scene->object_count; ++i)
+        if (loader->placed[i].built_mask != object_mask(loader->scene, &loader->scene->objects[i]))
+            return true;
+    return loader->world_changed;
 }
 
 void ty_rebuild_world(ty_loader* loader)

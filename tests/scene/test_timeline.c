@@ -194,6 +194,37 @@ static void only_what_changes_is_made_again(void** state)
     assert_true(bounds.high.x > 1.0f);
 }
 
+static bool is_hit(uint32_t mask)
+{
+    ty_hit hit;
+    ty_ray ray = ty_ray_make(ty_vec3_make(0.0f, 0.0f, 1.0f), ty_vec3_make(0.0f, 0.0f, -1.0f), 10.0f);
+    ray.mask = mask;
+    return ty_world_intersect(fixture_scene->world, &ray, &hit);
+}
+
+// Who sees an object changes with its keys, and with the opacity of its material.
+static void visibility_may_be_keyed(void** state)
+{
+    (void)state;
+    load(HEAD "assets: { ball: { shape: sphere, divisions: 8, radius: 0.1 } }\n"
+              "materials: { m: { model: surface, opacity: { keys: { 1: 1, 5: 1, 6: 0.5 } } } }\n"
+              "objects: [{ mesh: ball, material: m, visible: { camera: { keys: { 1: true, 3: false, 5: true } } } }]\n",
+         true);
+    static const struct
+    {
+        int frame;
+        bool camera, shadow;
+    } frames[] = {{1, true, true},  {2, true, true}, {3, false, true},
+                  {4, false, true}, {5, true, true}, {6, true, false}};
+    for (int i = 0; i < 6; ++i)
+    {
+        set_frame(frames[i].frame);
+        assert_int_equal(is_hit(TY_MASK_CAMERA), frames[i].camera);
+        assert_int_equal(is_hit(TY_MASK_SHADOW), frames[i].shadow);
+    }
+    assert_int_equal(fixture_scene->rebuilds.worlds, 3);
+}
+
 // The recipe of a frame, read by itself, is that frame; frames differ in their hashes, one frame does not.
 static void a_recipe_tells_its_frame(void** state)
 {
@@ -395,6 +426,7 @@ int main(void)
         FIXTURE_TEST(every_kind_of_value),
         FIXTURE_TEST(a_key_is_the_number),
         FIXTURE_TEST(only_what_changes_is_made_again),
+        FIXTURE_TEST(visibility_may_be_keyed),
         FIXTURE_TEST(a_recipe_tells_its_frame),
         FIXTURE_TEST(still_scenes_say_nothing_of_frames),
         FIXTURE_TEST(seeds_move_only_when_asked),
