@@ -11,9 +11,9 @@ static json_t* count(uint64_t value)
 
 static json_t* rebuilds_json(const ty_scene_rebuilds* rebuilds)
 {
-    return json_pack("{s:i, s:i, s:i, s:i, s:i, s:i}", "frames", rebuilds->frames, "cameras", rebuilds->cameras,
-                     "materials", rebuilds->materials, "lights", rebuilds->lights, "objects", rebuilds->objects,
-                     "worlds", rebuilds->worlds);
+    return json_pack("{s:i, s:i, s:i, s:i, s:i, s:i, s:i}", "frames", rebuilds->frames, "meshes", rebuilds->meshes,
+                     "cameras", rebuilds->cameras, "materials", rebuilds->materials, "lights", rebuilds->lights,
+                     "objects", rebuilds->objects, "worlds", rebuilds->worlds);
 }
 
 json_t* ty_render_stats_json(const ty_scene* scene, const ty_render_stats* stats, const char* output)

@@ -76,6 +76,11 @@ char* ply_note_write(const char* key, const char* text, char* out);  // returns 
 char* ply_note_read(const ply_file* file, const char* key);          // caller frees; NULL = none, or no memory
 int ply_find_property(const ply_element* element, const char* name); // -1 = none
 
+typedef struct ty_mesh ty_mesh;
+// crease: of the normals where the file has none, in radians; at pi no vertex is split.
+TY_CHECKED ty_status ply_read(const char* name, const void* bytes, size_t size, float crease, ty_mesh** out,
+                              ty_error* error);
+
 typedef struct ply_points
 {
     uint64_t count;

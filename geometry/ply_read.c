@@ -330,10 +330,9 @@ static bool normals_are_usable(const ty_mesh* mesh)
     return true;
 }
 
-ty_status ty_ply_read_memory(const char* name, const void* bytes, size_t size, ty_mesh** out, ty_error* error)
+ty_status ply_read(const char* name, const void* bytes, size_t size, float crease, ty_mesh** out, ty_error* error)
 {
     *out = NULL;
-    static const float crease = 0.7f; // 40 degrees: boxes keep their edges, scans stay smooth
     ply_file file;
     ty_mesh* mesh = NULL;
     face_list faces = {0};
@@ -369,4 +368,9 @@ ty_status ty_ply_read_memory(const char* name, const void* bytes, size_t size, t
     }
     *out = mesh;
     return TY_OK;
+}
+
+ty_status ty_ply_read_memory(const char* name, const void* bytes, size_t size, ty_mesh** out, ty_error* error)
+{
+    return ply_read(name, bytes, size, 0.7f, out, error); // 40 degrees: boxes keep their edges, scans stay smooth
 }

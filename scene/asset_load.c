@@ -27,7 +27,7 @@ void ty_load_textures(ty_loader* loader)
 }
 
 // Vertex colours to ACEScg, as textures are.
-static void convert_colors(const ty_loader* loader, ty_mesh* mesh)
+void ty_convert_colors(const ty_loader* loader, ty_mesh* mesh)
 {
     for (int i = 0; i < mesh->attribute_count; ++i)
     {
@@ -44,9 +44,9 @@ static void convert_colors(const ty_loader* loader, ty_mesh* mesh)
 }
 
 // What shading and tracing expect of every mesh.
-static void complete_mesh(const ty_loader* loader, ty_mesh* mesh)
+void ty_complete_mesh(const ty_loader* loader, ty_mesh* mesh)
 {
-    convert_colors(loader, mesh);
+    ty_convert_colors(loader, mesh);
     if (!mesh->welds)
         ty_mesh_compute_welds(mesh);
     if (!mesh->curvature_1)
@@ -55,7 +55,7 @@ static void complete_mesh(const ty_loader* loader, ty_mesh* mesh)
 
 static void keep_mesh(ty_loader* loader, ty_mesh* mesh)
 {
-    complete_mesh(loader, mesh);
+    ty_complete_mesh(loader, mesh);
     struct ty_scene_resources* resources = loader->scene->resources;
     resources->meshes[resources->mesh_count++] = mesh;
 }
@@ -63,7 +63,7 @@ static void keep_mesh(ty_loader* loader, ty_mesh* mesh)
 static void keep_aggregate(ty_loader* loader, ty_aggregate* aggregate)
 {
     for (int i = 0; i < aggregate->prototype_count; ++i)
-        complete_mesh(loader, aggregate->prototypes[i]);
+        ty_complete_mesh(loader, aggregate->prototypes[i]);
     if (!ty_mesh_share_slots(aggregate->prototypes, aggregate->prototype_count))
         ty_log(TY_LOG_WARNING, "an aggregate has more than %d materials: its slots are not told apart",
                TY_MESH_MAX_SLOTS);
@@ -74,8 +74,16 @@ static void keep_aggregate(ty_loader* loader, ty_aggregate* aggregate)
 // Assets of the same file share one mesh.
 static void load_mesh(ty_loader* loader, ty_asset* asset)
 {
+    if (asset->sequence)
+    {
+        ty_mesh_sequence_load(loader, asset);
+        if (asset->mesh)
+            keep_mesh(loader, asset->mesh);
+        return;
+    }
     for (int i = 0; i < loader->asset_count && !asset->mesh; ++i)
-        if (loader->assets[i].kind == TY_ASSET_MESH && strcmp(loader->assets[i].path, asset->path) == 0)
+        if (loader->assets[i].kind == TY_ASSET_MESH && !loader->assets[i].sequence &&
+            strcmp(loader->assets[i].path, asset->path) == 0)
             asset->mesh = loader->assets[i].mesh;
     ty_error error;
     if (asset->mesh)
@@ -147,7 +155,7 @@ static void load_gltf(ty_loader* loader, ty_asset* asset)
     }
     for (int i = 0; i < asset->gltf->mesh_count; ++i)
         if (asset->gltf->meshes[i])
-            complete_mesh(loader, asset->gltf->meshes[i]);
+            ty_complete_mesh(loader, asset->gltf->meshes[i]);
 }
 
 static void load_meshes(ty_loader* loader)

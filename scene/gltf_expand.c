@@ -97,6 +97,7 @@ static void open_all(ty_loader* loader)
     ty_node* map = ty_section(loader, "assets", TY_NODE_MAP);
     loader->asset_count = map ? map->count : 0;
     loader->assets = TY_ARENA_ALLOC(loader->tree.arena, ty_asset, loader->asset_count);
+    loader->scene->resources->sequences = TY_ARENA_ALLOC(loader->arena, struct ty_mesh_sequence*, loader->asset_count);
     loader->scene->resources->gltfs = TY_ARENA_ALLOC(loader->arena, ty_gltf_scene*, loader->asset_count);
     for (int i = 0; i < loader->asset_count; ++i)
     {

@@ -46,12 +46,13 @@ typedef struct ty_asset
     bool used;
     bool is_texture; // some material uses it as one
     bool bounds_known;
-    ty_bounds bounds;        // of everything, in the asset's own space
-    ty_mesh* mesh;           // once loaded
-    ty_aggregate* aggregate; // once loaded
-    const char* frames;      // RECIPE of frames: the pattern, once made
-    ty_gltf_scene* gltf;     // GLTF, and MESH of such a file: opened ahead of reading the tables; owned by the scene
-    int first_material;      // GLTF: of its materials among the scene's; the one for triangles without comes last
+    ty_bounds bounds;                  // of everything, in the asset's own space
+    ty_mesh* mesh;                     // once loaded
+    ty_aggregate* aggregate;           // once loaded
+    const char* frames;                // RECIPE of frames: the pattern, once made
+    struct ty_mesh_sequence* sequence; // MESH of a pattern
+    ty_gltf_scene* gltf; // GLTF, and MESH of such a file: opened ahead of reading the tables; owned by the scene
+    int first_material;  // GLTF: of its materials among the scene's; the one for triangles without comes last
 } ty_asset;
 
 typedef struct ty_attribute_use
@@ -107,6 +108,8 @@ struct ty_scene_resources
     ty_mesh** meshes;
     ty_aggregate** aggregates;
     ty_gltf_scene** gltfs;
+    struct ty_mesh_sequence** sequences;
+    int sequence_count;
     int mesh_count, aggregate_count, gltf_count;
     const char** passing; // folders of frames that could not be kept, removed at the end
     int passing_count;
@@ -226,6 +229,14 @@ int ty_surface_texture_of_asset(ty_loader* loader, int asset, const ty_node* nam
 int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data, int wrap); // wrap -1 = not said
 void ty_load_surface_textures(ty_loader* loader); // after the assets: recipes make frames
 void ty_set_texture_times(ty_loader* loader);     // to the scene's seconds
+// mesh_sequence.c: meshes that change with time
+void ty_mesh_sequence_read(ty_loader* loader, ty_asset* asset, const ty_mesh_asset_def* def, ty_node* pattern);
+void ty_mesh_sequence_load(ty_loader* loader, ty_asset* asset); // the mesh at the scene's seconds
+void ty_mesh_sequence_destroy(struct ty_mesh_sequence* sequence);
+void ty_set_mesh_times(ty_loader* loader); // to the scene's seconds; what changed is marked
+bool ty_mesh_has_changed(const ty_loader* loader, const ty_mesh* mesh);
+void ty_complete_mesh(const ty_loader* loader, ty_mesh* mesh); // what shading and tracing expect
+void ty_convert_colors(const ty_loader* loader, ty_mesh* mesh);
 // gltf_expand.c: glTF files that assets name, opened; their cameras and lights into the tree where objects ask for them
 void ty_gltf_expand(ty_loader* loader);
 // gltf_text.c: a scene of a glTF file alone, with light and a camera where it has none

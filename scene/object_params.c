@@ -14,7 +14,7 @@ static void visible_default(void* def)
 
 static void mesh_default(void* def)
 {
-    *(ty_mesh_asset_def*)def = (ty_mesh_asset_def){0};
+    *(ty_mesh_asset_def*)def = (ty_mesh_asset_def){.fps = 24.0f, .last_frame = -1, .interpolate = 1};
 }
 
 static void gltf_default(void* def)
@@ -87,11 +87,6 @@ static const ty_param object_rows[] = {
      "lights, glowing objects or light groups that do not light it", false},
 };
 
-static const ty_param mesh_rows[] = {
-    {"mesh", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_mesh_asset_def, mesh),
-     "a recipe (file or in place), or .ply .obj .stl .fbx .dae .off .glb .gltf (all of it as one)", true},
-};
-
 static const ty_param gltf_rows[] = {
     {"gltf", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_gltf_asset_def, gltf), ".glb or .gltf", true},
     {"light_scale", TY_PARAM_FLOAT, "", 0, 1e9, NULL, NULL, offsetof(ty_gltf_asset_def, light_scale),
@@ -130,6 +125,28 @@ static const ty_param frames_rows[] = {
     FRAMES_ROW(interpolate, TY_PARAM_ENUM, "", 0, 0, interpolations, "between one frame and the next"),
 };
 
+#define MESH_ROW(field, kind, unit, low, high, names, text)                                                            \
+    {                                                                                                                  \
+#field, kind, unit, low, high, names, NULL, offsetof(ty_mesh_asset_def, field), text, false                    \
+    }
+
+static const ty_param mesh_rows[] = {
+    {"mesh", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_mesh_asset_def, mesh),
+     "a recipe (file or in place), or .ply .obj .stl .fbx .dae .off .glb .gltf (all of it as one); .ply files with "
+     "#### "
+     "for the number (roots.####.ply) are animated, by what follows",
+     true},
+    MESH_ROW(fps, TY_PARAM_FLOAT, "1/s", 0.001, 100000, NULL, "files a second of the scene's time"),
+    MESH_ROW(start, TY_PARAM_FLOAT, "s", -1e6, 1e6, NULL, "when the first is shown; 0 = the timeline's start"),
+    MESH_ROW(first_frame, TY_PARAM_INT, "", -999999999, 999999999, NULL, "number of the first, with last_frame"),
+    MESH_ROW(last_frame, TY_PARAM_INT, "", -999999999, 999999999, NULL,
+             "number of the last; below first_frame: all there are"),
+    MESH_ROW(loop, TY_PARAM_BOOL, "", 0, 0, NULL, "the first follows the last"),
+    MESH_ROW(mirror, TY_PARAM_BOOL, "", 0, 0, NULL, "back and forth"),
+    MESH_ROW(hold, TY_PARAM_BOOL, "", 0, 0, NULL, "the first before, the last after; none of the three: an error"),
+    MESH_ROW(interpolate, TY_PARAM_ENUM, "", 0, 0, interpolations, "between one and the next"),
+};
+
 static const ty_param aggregate_rows[] = {
     {"aggregate", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_aggregate_asset_def, aggregate),
      "a recipe file (.yaml), a recipe in place, a .glb of instances, or .ply points", true},
@@ -143,8 +160,12 @@ static const ty_param_table object_table = {"object",
                                             object_default,
                                             object_rows,
                                             TY_PARAM_COUNT(object_rows)};
-static const ty_param_table mesh_table = {"asset.mesh", "A mesh file.", sizeof(ty_mesh_asset_def),
-                                          mesh_default, mesh_rows,      TY_PARAM_COUNT(mesh_rows)};
+static const ty_param_table mesh_table = {"asset.mesh",
+                                          "A mesh file, or a sequence of them.",
+                                          sizeof(ty_mesh_asset_def),
+                                          mesh_default,
+                                          mesh_rows,
+                                          TY_PARAM_COUNT(mesh_rows)};
 static const ty_param_table gltf_table = {"asset.gltf",
                                           "A glTF scene: meshes, materials, lights, cameras.",
                                           sizeof(ty_gltf_asset_def),

@@ -42,11 +42,20 @@ static void read_mesh(ty_loader* loader, ty_node* node, ty_asset* asset)
         read_recipe(loader, node, "mesh", asset);
         return;
     }
+    static const char* const skip[] = {"mesh", NULL};
+    ty_node* value = ty_node_get(node, "mesh");
+    bool is_sequence = value->kind == TY_NODE_SCALAR && ty_path_is_sequence(value->text);
     ty_mesh_asset_def def;
-    if (!ty_params_read(&loader->reader, node, ty_mesh_asset_params(), &def, NULL))
+    if (!ty_params_read(&loader->reader, node, ty_mesh_asset_params(), &def, is_sequence ? skip : NULL))
         return;
-    asset->kind = TY_ASSET_MESH;
+    if (!is_sequence && node->count > 1)
+        ty_report(loader->errors, node->place, TY_BAD_INPUT, "'%s' belongs to sequences: mesh: name.####.ply",
+                  node->keys[strcmp(node->keys[0].text, "mesh") == 0].text);
     asset->path = def.mesh;
+    if (is_sequence)
+        ty_mesh_sequence_read(loader, asset, &def, value);
+    if (asset->sequence || !is_sequence)
+        asset->kind = TY_ASSET_MESH;
 }
 
 static void read_texture(ty_loader* loader, ty_node* node, ty_asset* asset)

@@ -237,6 +237,7 @@ ty_status ty_scene_set_frame(ty_scene* scene, double frame, ty_error_list* error
     ty_loader_report_to(loader, errors);
     go_to(loader, frame);
     ty_set_texture_times(loader);
+    ty_set_mesh_times(loader);
     if (errors->count == first && scene->world && ty_world_is_stale(loader))
     {
         ty_rebuild_world(loader);

@@ -196,6 +196,8 @@ void ty_scene_destroy(ty_scene* scene)
         ty_path_folder(scene->resources->passing[i], parent);
         ty_folder_remove(parent);
     }
+    for (int i = 0; i < scene->resources->sequence_count; ++i)
+        ty_mesh_sequence_destroy(scene->resources->sequences[i]);
     for (int i = 0; i < scene->resources->gltf_count; ++i)
         ty_gltf_scene_destroy(scene->resources->gltfs[i]);
     ty_color_destroy(scene->color);

@@ -23,7 +23,11 @@ typedef struct ty_object_def
 // Entries of `assets:` by their first key.
 typedef struct ty_mesh_asset_def
 {
-    const char* mesh; // path
+    const char* mesh;            // path, or the pattern of a sequence
+    float fps, start;            // start in s
+    int first_frame, last_frame; // last below first: all there are
+    bool loop, mirror, hold;     // at most one
+    int interpolate;             // 0 none, 1 linear
 } ty_mesh_asset_def;
 
 typedef struct ty_texture_asset_def

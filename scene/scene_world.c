@@ -312,8 +312,48 @@ bool ty_world_is_stale(const ty_loader* loader)
     return loader->world_changed;
 }
 
+// A mesh that changed gets its tree anew, under the same number.
+static bool renew_prototypes(ty_loader* loader)
+{
+    ty_world* world = loader->scene->world;
+    ty_error error;
+    for (uint32_t i = 0; i < ty_world_prototype_count(world); ++i)
+    {
+        const ty_mesh* mesh = ty_world_prototype_mesh(world, i);
+        uint32_t number = i;
+        if (!mesh || !ty_mesh_has_changed(loader, mesh))
+            continue;
+        ty_world_remove_prototype(world, i);
+        if (ty_world_add_prototype(world, mesh, &number, &error) != TY_OK)
+        {
+            ty_error_list_add(loader->errors, &error);
+            return false;
+        }
+        TY_ASSERT(number == i);
+        ++loader->scene->rebuilds.meshes;
+    }
+    return true;
+}
+
+static void renew_depth_fields(ty_loader* loader)
+{
+    ty_scene* scene = loader->scene;
+    ty_error error;
+    for (uint32_t i = 0; i < scene->resources->depth_field_count; ++i)
+    {
+        const ty_mesh* mesh = ty_world_prototype_mesh(scene->world, i);
+        if (!scene->depth_fields[i] || !mesh || !ty_mesh_has_changed(loader, mesh))
+            continue;
+        ty_depth_field_destroy(scene->depth_fields[i]);
+        scene->depth_fields[i] = NULL;
+        if (ty_depth_field_create(scene->world, i, &scene->depth_fields[i], &error) != TY_OK)
+            ty_error_list_add(loader->errors, &error);
+    }
+}
+
 void ty_rebuild_world(ty_loader* loader)
 {
     ty_world_clear_objects(loader->scene->world);
-    (void)fill_world(loader); // what is wrong is in the list of errors
+    if (renew_prototypes(loader) && fill_world(loader))
+        renew_depth_fields(loader);
 }

@@ -8,6 +8,9 @@
 // with a reason (for PLY with line or byte).
 TY_CHECKED ty_status ty_mesh_read(const char* path, ty_mesh** out, ty_error* error);
 
+// A .ply file of a sequence: its vertices are those of the file, none split; normals that it lacks are smooth.
+TY_CHECKED ty_status ty_mesh_read_frame(const char* path, ty_mesh** out, ty_error* error);
+
 // PLY from memory (ascii, binary little and big endian). Keeps every scalar vertex property that is not a position,
 // normal, uv or index as a named attribute; properties NAME_x NAME_y NAME_z are not joined. Polygons are fanned.
 TY_CHECKED ty_status ty_ply_read_memory(const char* name, const void* bytes, size_t size, ty_mesh** out,

@@ -95,7 +95,7 @@ typedef struct ty_render_def
     int samples;           // per pixel
     int max_depth;         // surface interactions of a path
     int roulette_depth;    // no Russian roulette before this many interactions
-    float indirect_clamp; // largest channel of what one path adds after its second scattering; 0 = unlimited
+    float indirect_clamp;  // largest channel of what one path adds after its second scattering; 0 = unlimited
     ty_seed seed;          // of this frame, with animate_seed
     bool animate_seed;     // other noise in every frame
     int light_sampling;    // ty_light_sampling
@@ -218,7 +218,8 @@ typedef struct ty_scene_rebuilds
 {
     int frames; // ty_scene_set_frame
     int cameras, materials, lights, objects;
-    int worlds; // top-level trees; those of prototypes stay
+    int meshes; // with their trees
+    int worlds; // top-level trees; those of prototypes that do not change stay
 } ty_scene_rebuilds;
 
 // Frozen: const for the renderer. Owned by its arena and ty_scene_destroy.
@@ -287,7 +288,8 @@ typedef struct ty_scene_options
     ty_workers* workers; // for generators; NULL = the caller
 } ty_scene_options;
 
-// path: a scene file, a folder with scene.yaml, or a glTF file, which gets light and a camera where it has none. On failure *out is NULL and errors holds every mistake found.
+// path: a scene file, a folder with scene.yaml, or a glTF file, which gets light and a camera where it has none. On
+// failure *out is NULL and errors holds every mistake found.
 TY_CHECKED ty_status ty_scene_load(const char* path, const ty_scene_options* options, ty_scene** out,
                                    ty_error_list* errors);
 // The same from memory, e.g. the recipe of a picture. name stands in messages; files are found from its folder.

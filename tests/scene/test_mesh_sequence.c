@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes from sequences of files: where they are at a time, what is rebuilt, and what is wrong with the files.
+#include "scene/fixture.h"
+
+#define SCENE(options)                                                                                                 \
+    "tsuya: 1\ntimeline: { fps: 24, start: 1, end: 3 }\n"                                                              \
+    "assets: { moving: { mesh: m.####.ply, fps: 24" options " }, still: { shape: box } }\n"                            \
+    "materials: { m: { model: surface }, d: { model: cdrf } }\n"                                                       \
+    "objects: [ { mesh: moving, material: m }, { mesh: still, material: m, translate: [9, 0, 0] } ]\n"
+
+// A triangle of the unit axes at height z, of age z.
+static void write_frame(int number, float z, const char* triangle)
+{
+    char name[32];
+    snprintf(name, sizeof name, "m.%04d.ply", number);
+    char* text = ty_string_format("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                  "property float z\nproperty float age\nelement face 1\nproperty list uchar int "
+                                  "vertex_indices\nend_header\n0 0 %g %g\n1 0 %g %g\n0 1 %g %g\n3 %s\n",
+                                  (double)z, (double)z, (double)z, (double)z, (double)z, (double)z, triangle);
+    fixture_write(name, text);
+    ty_free(text);
+}
+
+static void write_frames(void)
+{
+    write_frame(5, 0.0f, "0 1 2");
+    write_frame(6, 1.0f, "0 1 2");
+    write_frame(7, 4.0f, "0 1 2");
+}
+
+static void load(const char* text)
+{
+    ty_scene_options options = {0};
+    fixture_write("scene.yaml", text);
+    ty_status status = fixture_load(&options);
+    if (status != TY_OK)
+        fixture_print_errors();
+    assert_int_equal(status, TY_OK);
+}
+
+static float height(void)
+{
+    ty_hit hit;
+    ty_ray ray = {.origin = {0.2f, 0.2f, 100.0f},
+                  .direction = {0, 0, -1},
+                  .t_max = 1000.0f,
+                  .skip_object = TY_NONE,
+                  .mask = TY_MASK_ALL,
+                  .skip_instance = TY_NONE};
+    assert_true(ty_world_intersect(fixture_scene->world, &ray, &hit));
+    return 100.0f - hit.t;
+}
+
+static void at_frame(double frame, float z)
+{
+    assert_int_equal(ty_scene_set_frame(fixture_scene, frame, &fixture_errors), TY_OK);
+    fixture_near(height(), z, 1e-4f);
+}
+
+static void files_follow_the_time(void** state)
+{
+    (void)state;
+    write_frames();
+    load(SCENE(""));
+    fixture_near(height(), 0.0f, 1e-5f);
+    at_frame(2, 1.0f);
+    at_frame(3, 4.0f);
+    at_frame(2.5, 2.5f); // between two
+    at_frame(1.25, 0.25f);
+    load(SCENE(", interpolate: none"));
+    at_frame(2.5, 1.0f);
+    load(SCENE(", first_frame: 6, last_frame: 7, hold: true"));
+    fixture_near(height(), 1.0f, 1e-5f);
+    at_frame(3, 4.0f);
+    load(SCENE(", loop: true"));
+    at_frame(4, 0.0f);
+    at_frame(3.5, 2.0f); // the first follows the last
+}
+
+static void only_what_changes_is_rebuilt(void** state)
+{
+    (void)state;
+    write_frames();
+    load(SCENE(", hold: true"));
+    at_frame(2, 1.0f);
+    assert_int_equal(fixture_scene->rebuilds.meshes, 1);
+    assert_int_equal(fixture_scene->rebuilds.worlds, 1);
+    at_frame(3, 4.0f);
+    at_frame(4, 4.0f); // held
+    at_frame(5, 4.0f);
+    assert_int_equal(fixture_scene->rebuilds.meshes, 2);
+    assert_int_equal(fixture_scene->rebuilds.worlds, 2);
+}
+
+// A frame that was gone to is the one that is loaded by itself.
+static void frames_do_not_remember(void** state)
+{
+    (void)state;
+    write_frames();
+    load(SCENE(", loop: true"));
+    at_frame(3, 4.0f);
+    at_frame(1.5, 0.5f);
+    char hash[33];
+    snprintf(hash, sizeof hash, "%s", fixture_scene->hash);
+    load(SCENE(", loop: true") "frame: 1.5\n");
+    fixture_near(height(), 0.5f, 1e-5f);
+    assert_string_equal(hash, fixture_scene->hash);
+}
+
+static void attributes_change_too(void** state)
+{
+    (void)state;
+    write_frames();
+    load("tsuya: 1\ntimeline: { end: 3 }\nassets: { a: { mesh: m.####.ply } }\n"
+         "materials: { m: { model: surface, specular_roughness: { attribute: age, scale: .1 } } }\n"
+         "objects: [ { mesh: a, material: m } ]\n");
+    ty_input input = ty_input_scalar(1.0f);
+    input.attribute_index = 0;
+    ty_surface_point point = {.u = 0.25f, .v = 0.25f};
+    assert_int_equal(ty_scene_set_frame(fixture_scene, 2.5, &fixture_errors), TY_OK);
+    fixture_near(ty_input_float(&input, &fixture_scene->shading, &point), 2.5f, 1e-5f);
+}
+
+static void wrong_files_are_named(void** state)
+{
+    (void)state;
+    write_frame(5, 0.0f, "0 1 2");
+    write_frame(7, 0.0f, "0 1 2");
+    assert_int_equal(fixture_check(SCENE("")), TY_BAD_FILE);
+    assert_non_null(strstr(fixture_errors.items[0].text, "lacks 1 of its frames: 6"));
+    write_frame(6, 0.0f, "0 2 1");
+    assert_int_equal(fixture_check(SCENE("")), TY_BAD_FILE);
+    assert_non_null(strstr(fixture_errors.items[0].text, "frame 6,"));
+    assert_non_null(strstr(fixture_errors.items[0].text, "one topology"));
+    ty_scene_options options = {0};
+    assert_int_equal(fixture_load(&options), TY_OK); // the first two frames of time are well
+    ty_status status = ty_scene_set_frame(fixture_scene, 2, &fixture_errors);
+    assert_int_equal(status, TY_BAD_FILE);
+    write_frames();
+    fixture_one_error("tsuya: 1\ntimeline: { end: 4 }\nassets: { a: { mesh: m.####.ply } }\n", 3, 22,
+                      "frame 4 of the timeline");
+    fixture_one_error("tsuya: 1\nassets: { a: { mesh: m.0005.ply, fps: 3 } }\n", 2, 14, "'fps' belongs to sequences");
+    fixture_one_error("tsuya: 1\nassets: { a: { mesh: n.####.ply } }\n", 2, 22, "n.####.ply");
+    fixture_one_error("tsuya: 1\ntimeline: { end: 3 }\nassets: { a: { mesh: m.####.ply, loop: true, hold: true } }\n",
+                      3, 22, "only one of");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        FIXTURE_TEST(files_follow_the_time),  FIXTURE_TEST(only_what_changes_is_rebuilt),
+        FIXTURE_TEST(frames_do_not_remember), FIXTURE_TEST(attributes_change_too),
+        FIXTURE_TEST(wrong_files_are_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
