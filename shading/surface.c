@@ -51,11 +51,11 @@ static ty_rgb transmission_albedo(const ty_bsdf* b, float mu)
     return ty_rgb_scale(b->transmission, ty_surface_clear(b) * (1.0f - share));
 }
 
-// Albedos of the lobes seen from mu, as rgb.
-static void lobe_albedos(const ty_bsdf* b, float mu, ty_rgb albedo[TY_LOBE_COUNT])
+// Albedos of the lobes seen from mu, as rgb. through: what the layers let through from there.
+static void lobe_albedos(const ty_bsdf* b, float mu, float through, ty_rgb albedo[TY_LOBE_COUNT])
 {
     float coat = b->inside ? 0.0f : ty_coat_albedo(b, mu), left = 1.0f - coat;
-    float diffuse = ty_surface_through_layers(b, mu) * ty_surface_diffuse(b);
+    float diffuse = through * ty_surface_diffuse(b);
     ty_rgb metal_lost = ty_rgb_scale(b->conductor_gain, TY_PI * b->conductor_loss.average);
     ty_rgb near = ty_rgb_scale(b->specular_tint, b->near_gain * TY_PI * b->near_loss.average);
     ty_rgb far = ty_rgb_scale(b->transmission, b->far_gain * TY_PI * b->far_loss.average);
@@ -68,11 +68,11 @@ static void lobe_albedos(const ty_bsdf* b, float mu, ty_rgb albedo[TY_LOBE_COUNT
     albedo[TY_LOBE_DIFFUSE_BELOW] = ty_rgb_scale(b->diffuse_below, diffuse);
 }
 
-static void choose_probabilities(ty_bsdf* b, float mu)
+static void choose_probabilities(ty_bsdf* b, float mu, float through)
 {
     ty_rgb albedo[TY_LOBE_COUNT];
     float sum = 0.0f;
-    lobe_albedos(b, mu, albedo);
+    lobe_albedos(b, mu, through, albedo);
     for (int i = 0; i < TY_LOBE_COUNT; i++)
     {
         b->lobe_probability[i] = (albedo[i].r + albedo[i].g + albedo[i].b) * (1.0f / 3.0f);
@@ -227,7 +227,7 @@ static void prepare_boundary(const ty_material* material, const ty_shading_conte
 static void prepare_matte(ty_bsdf* b)
 {
     b->diffuse = b->color;
-    b->layer_average = 1.0f;
+    b->layers_passed = 1.0f;
     b->lobe_probability[TY_LOBE_DIFFUSE] = ty_rgb_is_black(b->color) ? 0.0f : 1.0f;
 }
 
@@ -253,14 +253,16 @@ void ty_surface_prepare(const ty_material* material, const ty_shading_context* c
     prepare_boundary(material, context, b);
     if (material->coat)
         prepare_coat(material, context, b);
-    b->layer_average = layer_average(b);
-    choose_probabilities(b, ty_dot(b->wo, b->frame.n));
+    float mu = ty_dot(b->wo, b->frame.n), through = ty_surface_through_layers(b, mu);
+    b->layers_passed = through / layer_average(b);
+    choose_probabilities(b, mu, through);
 }
 
 ty_rgb ty_surface_albedo(const ty_bsdf* b)
 {
     ty_rgb albedo[TY_LOBE_COUNT], sum = {0};
-    lobe_albedos(b, ty_dot(b->wo, b->frame.n), albedo);
+    float mu = ty_dot(b->wo, b->frame.n);
+    lobe_albedos(b, mu, ty_surface_through_layers(b, mu), albedo);
     for (int i = 0; i < TY_LOBE_COUNT; i++)
         sum = ty_rgb_add(sum, albedo[i]);
     return sum;

@@ -84,9 +84,9 @@ float ty_surface_through_layers(const ty_bsdf* b, float mu)
     return (1.0f - ty_coat_albedo(b, mu)) * (1.0f - b->specular_weight * ty_albedo_row_at(&b->specular_row, mu));
 }
 
-static float diffuse_coupling(const ty_bsdf* b, float mu_o, float mu_i)
+static float diffuse_coupling(const ty_bsdf* b, float mu_i)
 {
-    return ty_surface_through_layers(b, mu_o) * ty_surface_through_layers(b, mu_i) / b->layer_average;
+    return b->layers_passed * ty_surface_through_layers(b, mu_i);
 }
 
 bool ty_surface_is_delta(const ty_bsdf* b)
@@ -130,12 +130,12 @@ static float facet_transmits(const ty_bsdf* b, float cos_h)
     return p[TY_LOBE_SPECULAR] + p[TY_LOBE_TRANSMISSION] - facet_reflects(b, cos_h);
 }
 
-ty_rgb ty_surface_eval_diffuse(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
+ty_rgb ty_surface_eval_diffuse(const ty_bsdf* b, ty_vec3 wi, float* pdf)
 {
     *pdf = 0.0f;
     if (!(b->lobe_probability[TY_LOBE_DIFFUSE] > 0.0f) || !(wi.z > 0.0f))
         return ty_rgb_grey(0.0f);
-    float k = diffuse_coupling(b, wo.z, wi.z) * ty_surface_diffuse(b);
+    float k = diffuse_coupling(b, wi.z) * ty_surface_diffuse(b);
     *pdf = b->lobe_probability[TY_LOBE_DIFFUSE] * wi.z * TY_INV_PI;
     return ty_rgb_scale(b->diffuse, k * wi.z * TY_INV_PI);
 }
@@ -160,7 +160,7 @@ static ty_rgb eval_reflection(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* p
     if (p[TY_LOBE_DIFFUSE] > 0.0f)
     {
         float diffuse_pdf;
-        f = ty_rgb_add(f, ty_surface_eval_diffuse(b, wo, wi, &diffuse_pdf));
+        f = ty_rgb_add(f, ty_surface_eval_diffuse(b, wi, &diffuse_pdf));
         *pdf += diffuse_pdf;
     }
     if (p[TY_LOBE_LOST_ABOVE] > 0.0f)
@@ -198,7 +198,7 @@ static ty_rgb eval_transmission(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float*
     }
     if (p[TY_LOBE_DIFFUSE_BELOW] > 0.0f)
     {
-        float k = diffuse_coupling(b, wo.z, -wi.z) * ty_surface_diffuse(b);
+        float k = diffuse_coupling(b, -wi.z) * ty_surface_diffuse(b);
         f = ty_rgb_add(f, ty_rgb_scale(b->diffuse_below, k * -wi.z * TY_INV_PI));
         *pdf += p[TY_LOBE_DIFFUSE_BELOW] * -wi.z * TY_INV_PI;
     }

@@ -64,7 +64,7 @@ typedef struct ty_bsdf
     float coat_alpha, coat_eta; // alpha 0 = mirror
     ty_albedo_row specular_row; // E of the dielectric specular
     ty_albedo_row coat_row;     // E of the coat
-    float layer_average;        // share of diffuse light that passes coat and specular
+    float layers_passed;        // share of diffuse light along wo that passes coat and specular, over its average
     // What facets lose that are met once only goes back as lobes in proportion to what is lost along wi.
     ty_loss_row conductor_loss, near_loss, far_loss; // of the metal; of the clear boundary from wo's side and beyond
     ty_rgb conductor_gain;                           // factor of conductor_loss(wi) cos
