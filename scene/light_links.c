@@ -117,6 +117,8 @@ static void report_unknown(ty_loader* loader, const ty_node* name)
 static void mark_all(ty_loader* loader, const ty_node* list, bool value, bool* marks)
 {
     bool single = list->kind == TY_NODE_SCALAR;
+    if (!single && list->kind != TY_NODE_LIST)
+        return; // reported by the table
     for (int i = 0; i < (single ? 1 : list->count); ++i)
     {
         const ty_node* name = single ? list : list->items[i];

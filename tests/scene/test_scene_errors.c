@@ -123,6 +123,47 @@ static void lights(void** state)
     fixture_one_error("tsuya: 1\nlights: [{ type: directional, target: [0, 1, 0] }]\n", 2, 39, "own center");
     fixture_one_error("tsuya: 1\nlights: [{ radiance: 1 }]\n", 2, 10, "missing key 'type' of light");
     fixture_one_error("tsuya: 1\nlights: [{ type: environment, image: sky.exr }]\n", 2, 38, "no file 'sky.exr'");
+    fixture_one_error("tsuya: 1\nlights: [{ type: disk, radius: 0 }]\n", 2, 32, "'radius' is 0: out of range");
+    fixture_one_error("tsuya: 1\nlights: [{ type: cylinder, length: -1 }]\n", 2, 36, "'length' is -1: out of range");
+    fixture_one_error("tsuya: 1\nlights: [{ type: cylinder, axis: [0, 0, 0] }]\n", 2, 34, "'axis' has no length");
+    fixture_one_error("tsuya: 1\nlights: [{ type: sphere, power: -5 }]\n", 2, 33, "'power' is -5: out of range");
+    fixture_one_error("tsuya: 1\nlights: [{ type: sphere, power: 5, radiance: 1 }]\n", 2, 33,
+                      "either 'power' or 'radiance', not both");
+    fixture_one_error("tsuya: 1\nlights: [{ type: spot, cone: 180 }]\n", 2, 30, "out of range");
+    fixture_one_error("tsuya: 1\nlights: [{ type: spot, image: slide.png }]\n", 2, 31, "no file 'slide.png'");
+    fixture_one_error("tsuya: 1\nlights: [{ type: sky, zenith: -1 }]\n", 2, 31, "out of range");
+    fixture_one_error("tsuya: 1\nlights: [{ type: point, group: 'a b' }]\n", 2, 32, "light group 'a b': expected");
+    fixture_one_error("tsuya: 1\nlights: [{ type: sphere, visible: { diffus: false } }]\n", 2, 37,
+                      "unknown key 'diffus' in light.visible; did you mean 'diffuse'?");
+}
+
+static void links_to_lights(void** state)
+{
+    (void)state;
+    static const char scene[] = "tsuya: 1\n"
+                                "assets: { ball: { shape: sphere } }\n"
+                                "materials: { m: { model: surface }, g: { model: surface, emission_luminance: 1 } }\n"
+                                "lights: [{ name: key, type: point, group: warm }]\n"
+                                "objects:\n"
+                                "  - { name: lamp, mesh: ball, material: g, light_group: lamps }\n"
+                                "  - { name: dull, mesh: ball, material: m%s }\n";
+    static const struct
+    {
+        const char *keys, *error;
+        int column;
+    } cases[] = {
+        {", lights: [key, kei]", "no light, glowing object or light group 'kei'; did you mean 'key'?", 58},
+        {", lights: [warm, lamps, lamp, dull]", "no light, glowing object or light group 'dull'", 72},
+        {", exclude_lights: wram", "did you mean 'warm'?", 60},
+        {", lights: key, exclude_lights: lamp", "either 'lights' or 'exclude_lights', not both", 73},
+        {", lights: { key: true }", "'lights': expected a list of texts", 52},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+    {
+        char text[1024];
+        snprintf(text, sizeof text, scene, cases[i].keys);
+        fixture_one_error(text, 7, cases[i].column, cases[i].error);
+    }
 }
 
 static void objects(void** state)
@@ -232,6 +273,7 @@ int main(void)
         FIXTURE_TEST(wrong_types_say_what_was_there),
         FIXTURE_TEST(cameras),
         FIXTURE_TEST(lights),
+        FIXTURE_TEST(links_to_lights),
         FIXTURE_TEST(objects),
         FIXTURE_TEST(assets_and_materials),
         FIXTURE_TEST(damaged_files_are_named_at_their_place),
