@@ -25,8 +25,7 @@ typedef struct picture
     const ty_fill_recipe* recipe;
     ty_gray_scott* field;
     float drift;
-    float* channels[3]; // of the frame; only the first for Y
-    int channel_count;
+    float* channels[3]; // of the frame; only the first for Y, the others NULL
 } picture;
 
 typedef struct run
@@ -177,8 +176,9 @@ static void pixel_set(const picture* p, size_t at, float v)
     t = t * t * (3.0f - 2.0f * t);
     ty_rgb color = ty_rgb_lerp(r->low, r->high, t);
     const float values[3] = {color.r, color.g, color.b};
-    for (int c = 0; c < p->channel_count; c++)
-        p->channels[c][at] = values[c];
+    for (int c = 0; c < 3; c++)
+        if (p->channels[c])
+            p->channels[c][at] = values[c];
 }
 
 static void rows_paint(void* context, int64_t begin, int64_t end, int worker)
@@ -216,10 +216,10 @@ static ty_status frame_put(run* r, const moment* m, const ty_frame_sink* sink, t
     int window[4] = {0, 0, recipe->cells[0] * recipe->scale - 1, recipe->cells[1] * recipe->scale - 1};
     ty_exr* image = ty_exr_create(window, window);
     picture p = {.recipe = recipe, .field = r->field, .drift = m->drift};
-    p.channel_count = is_grey(recipe->low) && is_grey(recipe->high) ? 1 : 3;
-    for (int c = 0; c < p.channel_count; c++)
-        p.channels[c] = ty_exr_add_channel(image, p.channel_count == 1 ? "Y" : names[c], TY_EXR_HALF);
-    if (p.channel_count == 3)
+    bool grey = is_grey(recipe->low) && is_grey(recipe->high);
+    for (int c = 0; c < (grey ? 1 : 3); c++)
+        p.channels[c] = ty_exr_add_channel(image, grey ? "Y" : names[c], TY_EXR_HALF);
+    if (!grey)
         ty_exr_add_chromaticities(image, ap1);
     ty_status status = TY_OK;
     if (!ty_parallel_for(r->workers, window[3] + 1, 16, rows_paint, &p))
