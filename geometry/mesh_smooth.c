@@ -7,8 +7,9 @@
 // width costs no more than some hundred sources a vertex. Fine cells lie in coarse ones as wide as the cut.
 enum
 {
-    fine_per_coarse = 6,   // coarse = 3 widths
-    coarse_limit = 1 << 18 // cells an axis, so that a key fits 64 bits
+    fine_per_coarse = 6,    // coarse = 3 widths
+    coarse_limit = 1 << 18, // cells an axis, so that a key fits 64 bits
+    fields_limit = 2
 };
 
 typedef struct cell
@@ -21,7 +22,8 @@ typedef struct cell
 typedef struct source
 {
     uint64_t coarse;
-    double x, y, z, value, area;
+    double x, y, z, area;
+    double value[fields_limit];
 } source;
 
 typedef struct source_set
@@ -30,6 +32,7 @@ typedef struct source_set
     size_t count;
     ty_vec3 low;
     double fine_size, width;
+    int field_count;
 } source_set;
 
 static int compare_cells(const void* a, const void* b)
@@ -77,12 +80,15 @@ static double* vertex_areas(const ty_mesh* mesh)
     return areas;
 }
 
-static void sources_init(source_set* set, const ty_mesh* mesh, const float* field, float width)
+static void sources_init(source_set* set, const ty_mesh* mesh, float* const* fields, int field_count, float width)
 {
     ty_bounds bounds = ty_bounds_empty();
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
         bounds = ty_bounds_add(bounds, mesh->positions[i]);
-    *set = (source_set){.low = bounds.low, .width = (double)width, .fine_size = 3.0 * (double)width / fine_per_coarse};
+    *set = (source_set){.low = bounds.low,
+                        .width = (double)width,
+                        .fine_size = 3.0 * (double)width / fine_per_coarse,
+                        .field_count = field_count};
     cell* cells = TY_ALLOC(cell, mesh->vertex_count);
     double* areas = vertex_areas(mesh);
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
@@ -99,7 +105,8 @@ static void sources_init(source_set* set, const ty_mesh* mesh, const float* fiel
         s->x += area * (double)p.x;
         s->y += area * (double)p.y;
         s->z += area * (double)p.z;
-        s->value += area * (double)field[cells[i].vertex];
+        for (int f = 0; f < field_count; f++)
+            s->value[f] += area * (double)fields[f][cells[i].vertex];
         s->area += area;
     }
     for (size_t i = 0; i < set->count; i++)
@@ -109,7 +116,8 @@ static void sources_init(source_set* set, const ty_mesh* mesh, const float* fiel
         s->x *= inverse;
         s->y *= inverse;
         s->z *= inverse;
-        s->value *= inverse;
+        for (int f = 0; f < field_count; f++)
+            s->value[f] *= inverse;
     }
     ty_free(areas);
     ty_free(cells);
@@ -131,7 +139,7 @@ static size_t lower_bound(const source_set* set, uint64_t key)
 }
 
 // Three neighbouring coarse cells along x are one stretch of the sorted sources.
-static void gather_row(const source_set* set, uint64_t key, ty_vec3 p, double* sum, double* weight)
+static void gather_row(const source_set* set, uint64_t key, ty_vec3 p, double sum[fields_limit], double* weight)
 {
     double inverse = 0.5 / (set->width * set->width), cut = 9.0 * set->width * set->width;
     for (size_t i = lower_bound(set, key - 1); i < set->count && set->items[i].coarse <= key + 1; i++)
@@ -142,30 +150,36 @@ static void gather_row(const source_set* set, uint64_t key, ty_vec3 p, double* s
         if (d2 > cut)
             continue;
         double w = s->area * (double)ty_exp((float)(-d2 * inverse));
-        *sum += w * s->value;
+        for (int f = 0; f < set->field_count; f++)
+            sum[f] += w * s->value[f];
         *weight += w;
     }
 }
 
-void ty_mesh_smooth_field(const ty_mesh* mesh, float* field, float width)
+void ty_mesh_smooth_fields(const ty_mesh* mesh, float* const* fields, int field_count, float width)
 {
+    TY_ASSERT(field_count >= 1 && field_count <= fields_limit);
     if (!(width > 0.0f) || mesh->vertex_count == 0)
         return;
     source_set set;
-    sources_init(&set, mesh, field, width);
+    sources_init(&set, mesh, fields, field_count, width);
+    const uint64_t first_row = ((uint64_t)coarse_limit + 1) * coarse_limit;
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
     {
         ty_vec3 p = mesh->positions[i];
-        uint64_t key = locate(&set, p, i).coarse;
-        double sum = 0.0, weight = 0.0;
+        uint64_t key = locate(&set, p, i).coarse - first_row;
+        double sum[fields_limit] = {0.0}, weight = 0.0;
         for (uint64_t z = 0; z < 3; z++)
             for (uint64_t y = 0; y < 3; y++)
-                gather_row(&set,
-                           key + (z * coarse_limit + y) * coarse_limit - ((uint64_t)coarse_limit + 1) * coarse_limit, p,
-                           &sum, &weight);
+                gather_row(&set, key + (z * coarse_limit + y) * coarse_limit, p, sum, &weight);
         // A vertex far from any area keeps its value.
-        if (weight > 0.0)
-            field[i] = (float)(sum / weight);
+        for (int f = 0; f < field_count && weight > 0.0; f++)
+            fields[f][i] = (float)(sum[f] / weight);
     }
     ty_free(set.items);
+}
+
+void ty_mesh_smooth_field(const ty_mesh* mesh, float* field, float width)
+{
+    ty_mesh_smooth_fields(mesh, &field, 1, width);
 }

@@ -10,7 +10,7 @@
 
 ty_world_def ty_world_def_default(void)
 {
-    return (ty_world_def){TY_TRACE_FAST, NULL};
+    return (ty_world_def){.path = TY_TRACE_FAST};
 }
 
 // --- Embree's device ---
@@ -104,6 +104,7 @@ ty_status ty_world_create(const ty_world_def* def, ty_world** out, ty_error* err
     *out = NULL;
     ty_world* world = TY_ALLOC(ty_world, 1);
     world->path = def->path;
+    world->workers = def->workers;
     world->bounds = ty_bounds_empty();
     ty_status status = create_device(world, def->isa, error);
     if (status != TY_OK)
@@ -241,17 +242,37 @@ static ty_status attach_fast(ty_world* world, ty_error* error)
     return status;
 }
 
-// Worth its time where many instances share the prototypes.
+static void find_some_horizons(void* context, int64_t begin, int64_t end, int worker)
+{
+    (void)worker;
+    ty_trace_prototype* const* prototypes = context;
+    for (int64_t i = begin; i < end; i++)
+        ty_trace_find_horizons(prototypes[i]);
+}
+
+// Worth its time where many instances share the prototypes. A cancelled search leaves some out: rays are traced that
+// need not be.
 static void find_horizons(ty_world* world)
 {
+    ty_trace_prototype** wanted = TY_ALLOC(ty_trace_prototype*, world->prototype_count);
+    bool* listed = TY_ALLOC(bool, world->prototype_count);
+    int64_t count = 0;
     for (uint32_t i = 0; i < world->object_count; i++)
     {
         const ty_aggregate* aggregate = world->objects[i].aggregate;
         if (!aggregate || aggregate->instance_count < 16u * (uint32_t)aggregate->prototype_count)
             continue;
         for (int k = 0; k < aggregate->prototype_count; k++)
-            ty_trace_find_horizons(&world->prototypes[world->objects[i].prototypes[k]]);
+        {
+            uint32_t prototype = world->objects[i].prototypes[k];
+            if (!listed[prototype])
+                wanted[count++] = &world->prototypes[prototype];
+            listed[prototype] = true;
+        }
     }
+    ty_parallel_for(world->workers, count, 1, find_some_horizons, wanted);
+    ty_free(listed);
+    ty_free(wanted);
 }
 
 ty_status ty_world_commit(ty_world* world, ty_error* error)
@@ -268,6 +289,7 @@ ty_status ty_world_commit(ty_world* world, ty_error* error)
     else
     {
         find_horizons(world);
+        world->workers = NULL;
         status = attach_fast(world, error);
     }
     rtcCommitScene(world->scene);

@@ -37,7 +37,8 @@ typedef struct ty_trace_object
 
 struct ty_world
 {
-    char* isa; // kernels in use, owned
+    char* isa;           // kernels in use, owned
+    ty_workers* workers; // borrowed until commit returns
     RTCDevice device;
     RTCScene scene;      // NULL before commit; fast path: what is not in `wide`
     ty_trace_wide* wide; // fast path: the instances at rest; NULL = none

@@ -208,6 +208,23 @@ static void need_depth(ty_loader* loader, int object, bool* needed)
         needed[ty_world_prototype(scene->world, (uint32_t)object, i)] = true;
 }
 
+typedef struct depth_job
+{
+    const ty_world* world;
+    const bool* needed;
+    ty_depth_field** fields;
+    ty_status* statuses;
+} depth_job;
+
+static void make_some_depth_fields(void* context, int64_t begin, int64_t end, int worker)
+{
+    (void)worker;
+    const depth_job* job = context;
+    for (int64_t i = begin; i < end; ++i)
+        if (job->needed[i])
+            job->statuses[i] = ty_depth_field_create(job->world, (uint32_t)i, &job->fields[i], NULL);
+}
+
 static ty_status make_depth_fields(ty_loader* loader, ty_error* error)
 {
     ty_scene* scene = loader->scene;
@@ -217,15 +234,18 @@ static ty_status make_depth_fields(ty_loader* loader, ty_error* error)
     bool* needed = TY_ARENA_ALLOC(loader->tree.arena, bool, count);
     for (int i = 0; i < scene->object_count; ++i)
         need_depth(loader, i, needed);
-    ty_status status = TY_OK;
-    for (uint32_t i = 0; i < count && status == TY_OK; ++i)
+    depth_job job = {scene->world, needed, scene->depth_fields, TY_ARENA_ALLOC(loader->tree.arena, ty_status, count)};
+    if (!ty_parallel_for(loader->options->workers, count, 1, make_some_depth_fields, &job))
+        return ty_error_set(error, TY_INTERRUPTED, "stopped while loading");
+    for (uint32_t i = 0; i < count; ++i)
     {
         const ty_mesh* mesh = ty_world_prototype_mesh(scene->world, i);
         scene->triangle_count += mesh ? mesh->triangle_count : 0;
-        if (needed[i])
-            status = ty_depth_field_create(scene->world, i, &scene->depth_fields[i], error);
+        if (job.statuses[i] != TY_OK)
+            return ty_error_set(error, job.statuses[i], "no memory for the depth field of %u vertices",
+                                mesh ? mesh->vertex_count : 0);
     }
-    return status;
+    return TY_OK;
 }
 
 // By prototype, in the order of attribute names.
@@ -288,6 +308,7 @@ void ty_build_world(ty_loader* loader)
     ty_world_def def = ty_world_def_default();
     def.path = loader->options->trace_path;
     def.isa = loader->options->isa;
+    def.workers = loader->options->workers;
     ty_status status = ty_world_create(&def, &scene->world, &error);
     if (status == TY_OK)
     {

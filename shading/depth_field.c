@@ -45,8 +45,8 @@ ty_status ty_depth_field_create(const ty_world* world, uint32_t prototype, ty_de
     for (uint32_t i = 0; i < count; i++)
         inverse[i] = 1.0f / field->depth[i];
     float width = smoothing_width(mesh, ty_world_topology(world, prototype));
-    ty_mesh_smooth_field(mesh, inverse, width);
-    ty_mesh_smooth_field(mesh, field->curvature, width);
+    float* const fields[] = {inverse, field->curvature};
+    ty_mesh_smooth_fields(mesh, fields, 2, width);
     for (uint32_t i = 0; i < count; i++)
     {
         field->depth[i] = ty_min(field->depth[i], 1.0f / inverse[i]);

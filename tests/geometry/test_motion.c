@@ -14,7 +14,7 @@ static const ty_vec3 down = {0, 0, -1};
 
 static ty_world* new_world(ty_trace_path path)
 {
-    ty_world_def def = {path, NULL};
+    ty_world_def def = {.path = path};
     ty_world* world = NULL;
     ty_error error;
     assert_int_equal(ty_world_create(&def, &world, &error), TY_OK);

@@ -293,7 +293,7 @@ static void far_from_the_origin(void** state)
     uint32_t object;
     for (int path = 0; path < 2; path++)
     {
-        ty_world_def def = {(ty_trace_path)path, NULL};
+        ty_world_def def = {.path = (ty_trace_path)path};
         assert_int_equal(ty_world_create(&def, &world[path], &error), TY_OK);
         assert_int_equal(
             ty_world_add_aggregate(world[path], s->first, ty_motion_at_rest(&away), opaque, &object, &error), TY_OK);
@@ -453,7 +453,7 @@ static void bad_input(void** state)
     stage* s = *state;
     ty_world* world = NULL;
     ty_error error = {0};
-    ty_world_def def = {TY_TRACE_FAST, "avx9"};
+    ty_world_def def = {.path = TY_TRACE_FAST, .isa = "avx9"};
     assert_int_equal(ty_world_create(&def, &world, &error), TY_BAD_INPUT);
     assert_null(world);
     def.isa = "avx2,verbose=3";

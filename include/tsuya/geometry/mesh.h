@@ -77,6 +77,8 @@ void ty_mesh_analyse(const ty_mesh* mesh, ty_mesh_topology* out); // needs welds
 // Gaussian average of a per-vertex field over the surface: weight exp(-|d|^2 / (2 width^2)) * vertex area, cut at 3
 // width.
 void ty_mesh_smooth_field(const ty_mesh* mesh, float* field, float width);
+// One or two fields at once, for little more than one: the same bits.
+void ty_mesh_smooth_fields(const ty_mesh* mesh, float* const* fields, int field_count, float width);
 
 // NULL if there is none.
 const ty_mesh_attribute* ty_mesh_find_attribute(const ty_mesh* mesh, const char* name);

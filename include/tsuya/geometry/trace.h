@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ray queries. The only door to Embree. A world is built once, then const: any thread may query it.
 #pragma once
+#include <tsuya/base/workers.h>
 #include <tsuya/geometry/aggregate.h>
 #include <tsuya/geometry/mesh.h>
 
@@ -71,7 +72,8 @@ typedef enum ty_trace_path
 typedef struct ty_world_def
 {
     ty_trace_path path;
-    const char* isa; // NULL = the best of this CPU; "avx2", "sse4.2", "avx512" ... pins Embree's kernels
+    const char* isa;     // NULL = the best of this CPU; "avx2", "sse4.2", "avx512" ... pins Embree's kernels
+    ty_workers* workers; // for commit; borrowed, NULL = the caller alone
 } ty_world_def;
 
 ty_world_def ty_world_def_default(void);
