@@ -276,6 +276,9 @@ static bool shape_along(const ty_light_set* set, int index, const ty_ray* ray, f
     if (!view->full)
         due = ty_rgb_mul(
             due, share(set, index, light->visible, view, shape_pdf(light, view->from.position, ray->direction)));
+    if (!ty_rgb_is_black(view->absorption))
+        due = ty_rgb_mul(due, ty_rgb_make(ty_exp(-view->absorption.r * t), ty_exp(-view->absorption.g * t),
+                                          ty_exp(-view->absorption.b * t)));
     ty_film_sample_add(out, light->group, due);
     return true;
 }
@@ -324,7 +327,7 @@ static bool shapes_along(const ty_light_set* set, const ty_light_selection* s, c
 static ty_rgb sky_along(const ty_light_set* set, int index, const ty_ray* ray, const ty_light_view* view)
 {
     const ty_light* light = &set->lights[index];
-    if (!(light->visible & view->seen))
+    if (!(light->visible & view->seen) || !ty_rgb_is_black(view->absorption)) // the way out of a medium has no end
         return (ty_rgb){0};
     ty_rgb radiance = light->value;
     float pdf = 0.0f;

@@ -108,6 +108,7 @@ typedef struct ty_light_view
     bool full;           // no light sampling competed: camera rays and mirror reflections
     bool done;           // all light along the ray has been counted already, but for what surfaces emit
     unsigned seen;       // ty_mask of the ray
+    ty_rgb absorption;   // 1/m, of the medium along the ray
     ty_bsdf_parts parts; // of the direction, where the set is restricted and view is not full
 } ty_light_view;
 

@@ -141,14 +141,19 @@ static bool meets_boundary(const ty_integrator* in, const ty_material* material,
     return true;
 }
 
+static ty_rgb along_medium(const ty_integrator* in, const ty_path* p)
+{
+    const ty_medium* top = in->has_media ? ty_media_top(&p->media) : NULL;
+    return top ? top->absorption : ty_rgb_grey(0.0f);
+}
+
 // Beer's law over the way to the surface, and the media on both sides of it.
 static void arrive(const ty_integrator* in, float distance, ty_path* p)
 {
     p->at_boundary = false;
     if (!in->has_media)
         return;
-    const ty_medium* top = ty_media_top(&p->media);
-    p->absorption[0] = p->absorption[1] = top ? top->absorption : ty_rgb_grey(0.0f);
+    p->absorption[0] = p->absorption[1] = p->view.absorption;
     p->beta = ty_rgb_mul(p->beta, ty_path_absorbed(p->absorption[0], distance));
 }
 
@@ -174,6 +179,7 @@ static bool find_surface(const ty_integrator* in, const ty_sampler* sampler, ty_
         ty_surface_point point;
         float outside = 1.0f;
         bool found = ty_world_intersect(scene->world, &p->ray, &hit);
+        p->view.absorption = along_medium(in, p);
         if (!p->view.done)
             meet_lights(in, found ? hit.t : TY_FLOAT_MAX, p, out);
         if (!found)

@@ -181,6 +181,44 @@ static void camera_within(void** state)
     }
 }
 
+// A lamp in the same water as the floor it lights, found by its own samples or by the floor's.
+static void lamps_within_are_dimmed(void** state)
+{
+    (void)state;
+    static const char* const sampling[] = {"light", "bsdf", "mis"};
+    for (int i = 0; i < 3; i++)
+    {
+        char text[2048];
+        double error, sigma = -log(0.5) / 0.1;
+        snprintf(
+            text, sizeof text,
+            "tsuya: 1\n"
+            "film: { size: [8, 8], filter: box, filter_width: 1, half: false }\n"
+            "render: { samples: 1024, max_depth: 1, seed: 3, light_sampling: %s }\n"
+            "camera: { position: [0, 0.05, 0.0001], look_at: [0, 0, 0], vfov: 0.1 }\n"
+            "assets: { floor: { shape: disc, radius: 0.01 }, tank: { shape: box, size: [1, 1, 1] } }\n"
+            "materials:\n"
+            "  white: { model: surface, base_color: 1, specular_weight: 0 }\n"
+            "  water: { model: surface, transmission_weight: 1, specular_roughness: 0, specular_ior: 1.33, "
+            "transmission_color: 0.5, transmission_depth: 0.1 }\n"
+            "objects: [ { mesh: floor, material: white }, { mesh: tank, material: water } ]\n"
+            "lights: [ { type: sphere, center: [0, 0.3, 0], radius: 0.03, radiance: 40, camera_visible: false } ]\n",
+            sampling[i]);
+        double found = render_mean(text, &error);
+        // The way to the lamp's near side is .27 m on the axis and .298 m at its rim: the mean over its disc, seen from
+        // the floor, by midpoints.
+        double expected = 0;
+        for (int k = 0; k < 1000; k++)
+        {
+            double s = (k + 0.5) / 1000 * 0.01, c = sqrt(1 - s), t = 0.3 * c - sqrt(0.0009 - 0.09 * s);
+            expected += 40 * 0.01 / 1000 * exp(-sigma * t);
+        }
+        expected *= exp(-sigma * 0.05);
+        print_message("lamp in water, %s: %.5f +- %.5f expected %.5f\n", sampling[i], found, error, expected);
+        assert_true(fabs(found - expected) <= 3.5 * error + 1e-4 * expected);
+    }
+}
+
 // --- straight through ---
 
 static double shaded_floor(const char* material, const char* height, const char* light, const char* sampling,
@@ -273,6 +311,7 @@ int main(void)
         cmocka_unit_test(overlapping_slabs_are_as_if_touching),
         cmocka_unit_test(a_core_needs_no_priority),
         cmocka_unit_test(camera_within),
+        cmocka_unit_test(lamps_within_are_dimmed),
         cmocka_unit_test(shadows_are_as_transparent),
         cmocka_unit_test(panes_cast_clear_shadows),
         cmocka_unit_test(alpha_is_the_share_that_stops),
