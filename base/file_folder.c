@@ -17,7 +17,10 @@ enum
 
 void ty_folder_remove(const char* path)
 {
-    DIR* folder = opendir(path);
+    int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    DIR* folder = fd < 0 ? NULL : fdopendir(fd);
+    if (!folder && fd >= 0)
+        close(fd);
     if (!folder)
         return;
     for (struct dirent* entry = readdir(folder); entry; entry = readdir(folder))

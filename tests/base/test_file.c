@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <tsuya/base/file.h>
 #include <tsuya/base/memory.h>
+#include <unistd.h>
 
 static char folder[64];
 static char path[TY_PATH_MAX];
@@ -442,6 +443,12 @@ static void test_folders_are_whole(void** state)
     ty_atomic_folder_abort(&frames);
     assert_int_equal(entries_of(target), 1);
     assert_int_equal(entries_of(folder), 1);
+    char link[TY_PATH_MAX];
+    strcpy(link, at("link"));
+    assert_int_equal(symlink(target, link), 0);
+    ty_folder_remove(link); // a link is no folder of ours
+    assert_content("frames/2", "two");
+    assert_int_equal(unlink(link), 0);
     write_plain("file", "text"); // is in the way
     assert_int_equal(ty_atomic_folder_begin(&frames, at("file"), &error), TY_OK);
     assert_int_equal(ty_atomic_folder_commit(&frames, &error), TY_BAD_FILE);
