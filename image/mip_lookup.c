@@ -10,13 +10,12 @@ enum
     MAX_PROBES = 16,
 };
 
-// A lookup's hold on the tile it last looked at.
+// The tile that a lookup is at.
 typedef struct reader
 {
     ty_mip_cache* cache;
     const ty_oiio_tile_file* file;
     ty_wrap wrap;
-    void* tile;
     const uint16_t* texels; // NULL = none yet, or it cannot be read
     int level, column, row; // of the tile; level -1 = none yet
 } reader;
@@ -32,9 +31,7 @@ static void turn_to(reader* r, int level, int column, int row)
 {
     if (r->level == level && r->column == column && r->row == row)
         return;
-    ty_oiio_tile_give(r->cache->tiles, r->tile);
-    r->texels =
-        ty_oiio_tile_take(r->cache->tiles, r->file, level, column << TY_TILE_BITS, row << TY_TILE_BITS, &r->tile);
+    r->texels = ty_oiio_tile_take(r->cache->tiles, r->file, level, column, row);
     r->level = level;
     r->column = column;
     r->row = row;
@@ -150,5 +147,4 @@ void ty_mip_image_add(ty_mip_cache* cache, const ty_mip_image* image, ty_wrap wr
 {
     reader r = {.cache = cache, .file = &image->file, .wrap = wrap, .level = -1};
     add_filtered(&r, uv, du, dv, weight, sum);
-    ty_oiio_tile_give(cache->tiles, r.tile);
 }

@@ -102,16 +102,9 @@ ty_oiio_result ty_oiio_tiles_open(ty_oiio_tiles* tiles, const char* path, const 
     return present()->ty_oiio_tiles_open(tiles, path, key, out, text, text_size);
 }
 
-const uint16_t* ty_oiio_tile_take(ty_oiio_tiles* tiles, const ty_oiio_tile_file* file, int level, int x, int y,
-                                  void** tile)
+const uint16_t* ty_oiio_tile_take(ty_oiio_tiles* tiles, const ty_oiio_tile_file* file, int level, int column, int row)
 {
-    return present()->ty_oiio_tile_take(tiles, file, level, x, y, tile);
-}
-
-void ty_oiio_tile_give(ty_oiio_tiles* tiles, void* tile)
-{
-    if (tile)
-        present()->ty_oiio_tile_give(tiles, tile);
+    return present()->ty_oiio_tile_take(tiles, file, level, column, row);
 }
 
 void ty_oiio_tiles_get_error(ty_oiio_tiles* tiles, char* text, size_t text_size)

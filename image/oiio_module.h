@@ -21,7 +21,6 @@
     X(ty_oiio_tiles_get_stats)                                                                                         \
     X(ty_oiio_tiles_open)                                                                                              \
     X(ty_oiio_tile_take)                                                                                               \
-    X(ty_oiio_tile_give)                                                                                               \
     X(ty_oiio_tiles_get_error)                                                                                         \
     X(ty_oiio_tiled_write)
 

@@ -21,6 +21,7 @@ extern "C"
     typedef struct ty_oiio_tile_file
     {
         void* handle;
+        int order;                                // in which files were opened
         int width, height, channels, level_count; // a level is half the one before, rounded down, at least 1
     } ty_oiio_tile_file;
 
@@ -42,11 +43,10 @@ extern "C"
     ty_oiio_result ty_oiio_tiles_open(ty_oiio_tiles* tiles, const char* path, const char* key, ty_oiio_tile_file* out,
                                       char* text, size_t text_size);
 
-    // The tile of a level that holds texel (x, y): [TY_TILE_SIZE][TY_TILE_SIZE][channels] halves, there until it is
-    // given back. Any thread. NULL = it cannot be read; *tile is then nothing to give back.
-    const uint16_t* ty_oiio_tile_take(ty_oiio_tiles* tiles, const ty_oiio_tile_file* file, int level, int x, int y,
-                                      void** tile);
-    void ty_oiio_tile_give(ty_oiio_tiles* tiles, void* tile); // NULL is allowed
+    // A tile of a level, by its column and row: [TY_TILE_SIZE][TY_TILE_SIZE][channels] halves, there until this thread
+    // takes its next. Any thread; each keeps hold of a few that it took last. NULL = it cannot be read.
+    const uint16_t* ty_oiio_tile_take(ty_oiio_tiles* tiles, const ty_oiio_tile_file* file, int level, int column,
+                                      int row);
     // The last reason for a NULL of this thread.
     void ty_oiio_tiles_get_error(ty_oiio_tiles* tiles, char* text, size_t text_size);
 

@@ -6,19 +6,48 @@
 #include <OpenImageIO/imagecache.h>
 #include <atomic>
 #include <memory>
+#include <mutex>
+#include <vector>
 
 #define KEY "tsuya:key"
+
+namespace
+{
+
+// Asking the library for a tile takes locks and counts references: a thread looks first among those it took last.
+struct shelf
+{
+    static constexpr int size = 32;
+    struct place
+    {
+        const void* handle = nullptr;
+        int level = 0, column = 0, row = 0;
+        OIIO::ImageCache::Tile* tile = nullptr; // nullptr = nothing here
+        const uint16_t* texels = nullptr;
+    };
+    place places[size];
+    OIIO::ImageCache::Perthread* perthread = nullptr;
+};
+
+} // namespace
 
 struct ty_oiio_tiles
 {
     OIIO::ImageCache* cache = nullptr;
     uint64_t serial = 0; // no other cache of this process has it
+    int opened = 0;      // files
+    std::mutex guard;    // of shelves
+    std::vector<std::unique_ptr<shelf>> shelves;
 
     ty_oiio_tiles() = default;
     ty_oiio_tiles(const ty_oiio_tiles&) = delete;
     ty_oiio_tiles& operator=(const ty_oiio_tiles&) = delete;
     ~ty_oiio_tiles()
     {
+        for (const std::unique_ptr<shelf>& one : shelves)
+            for (const shelf::place& place : one->places)
+                if (place.tile)
+                    cache->release_tile(place.tile);
         (void)cache->geterror(); // pending messages would be printed
         OIIO::ImageCache::destroy(cache, true);
     }
@@ -28,16 +57,20 @@ namespace
 {
 
 // A thread asks for its own part of the cache once, not at every lookup.
-OIIO::ImageCache::Perthread* perthread_of(const ty_oiio_tiles* tiles)
+shelf& shelf_of(ty_oiio_tiles* tiles)
 {
     static thread_local uint64_t serial = 0;
-    static thread_local OIIO::ImageCache::Perthread* mine = nullptr;
+    static thread_local shelf* mine = nullptr;
     if (serial != tiles->serial)
     {
-        mine = tiles->cache->get_perthread_info();
+        auto made = std::make_unique<shelf>();
+        made->perthread = tiles->cache->get_perthread_info();
+        const std::lock_guard<std::mutex> lock(tiles->guard);
+        tiles->shelves.push_back(std::move(made));
+        mine = tiles->shelves.back().get();
         serial = tiles->serial;
     }
-    return mine;
+    return *mine;
 }
 
 OIIO::ImageInput* open_exr()
@@ -129,6 +162,7 @@ ty_oiio_result ty_oiio_tiles_open(ty_oiio_tiles* tiles, const char* path, const 
             if (!is_ours(spec, key) || levels < 1 || levels > TY_LEVELS_MAX || level_side(longest, levels - 1) != 1)
                 return ty_oiio_fail(text, text_size, "it holds something else");
             out->handle = cache.get_image_handle(name);
+            out->order = ++tiles->opened;
             out->width = spec.width;
             out->height = spec.height;
             out->channels = spec.nchannels;
@@ -137,36 +171,58 @@ ty_oiio_result ty_oiio_tiles_open(ty_oiio_tiles* tiles, const char* path, const 
         });
 }
 
-const uint16_t* ty_oiio_tile_take(ty_oiio_tiles* tiles, const ty_oiio_tile_file* file, int level, int x, int y,
-                                  void** tile)
+namespace
 {
-    *tile = nullptr;
+
+// Fills a place, or leaves it empty.
+void fetch(ty_oiio_tiles* tiles, const ty_oiio_tile_file* file, OIIO::ImageCache::Perthread* perthread,
+           shelf::place& place)
+{
+    OIIO::ImageCache& cache = *tiles->cache;
+    if (place.tile)
+        cache.release_tile(place.tile);
+    place.tile = nullptr;
+    place.texels = nullptr;
+    auto* handle = static_cast<OIIO::ImageCache::ImageHandle*>(file->handle);
+    OIIO::ImageCache::Tile* tile =
+        cache.get_tile(handle, perthread, 0, place.level, place.column * TY_TILE_SIZE, place.row * TY_TILE_SIZE, 0);
+    if (!tile)
+        return;
+    OIIO::TypeDesc format;
+    const void* texels = cache.tile_pixels(tile, format);
+    if (texels && format == OIIO::TypeDesc::HALF)
+    {
+        place.tile = tile;
+        place.texels = static_cast<const uint16_t*>(texels);
+    }
+    else
+        cache.release_tile(tile);
+}
+
+} // namespace
+
+const uint16_t* ty_oiio_tile_take(ty_oiio_tiles* tiles, const ty_oiio_tile_file* file, int level, int column, int row)
+{
     try
     {
-        auto* handle = static_cast<OIIO::ImageCache::ImageHandle*>(file->handle);
-        OIIO::ImageCache::Tile* taken = tiles->cache->get_tile(handle, perthread_of(tiles), 0, level, x, y, 0);
-        if (!taken)
-            return nullptr;
-        OIIO::TypeDesc format;
-        const void* texels = tiles->cache->tile_pixels(taken, format);
-        if (texels && format == OIIO::TypeDesc::HALF)
-        {
-            *tile = taken;
-            return static_cast<const uint16_t*>(texels);
-        }
-        tiles->cache->release_tile(taken);
+        shelf& own = shelf_of(tiles);
+        // Neighbours, levels and the two frames of a blend lie in different places.
+        const unsigned key = unsigned(column) + 3u * unsigned(row) + 7u * unsigned(level) + unsigned(file->order) * 13u;
+        shelf::place& place = own.places[key % shelf::size];
+        if (place.tile && place.handle == file->handle && place.level == level && place.column == column &&
+            place.row == row)
+            return place.texels;
+        place.handle = file->handle;
+        place.level = level;
+        place.column = column;
+        place.row = row;
+        fetch(tiles, file, own.perthread, place);
+        return place.texels;
     }
     catch (...)
     {
-        // Out of memory: as a tile that cannot be read.
+        return nullptr; // out of memory: as a tile that cannot be read
     }
-    return nullptr;
-}
-
-void ty_oiio_tile_give(ty_oiio_tiles* tiles, void* tile)
-{
-    if (tile)
-        tiles->cache->release_tile(static_cast<OIIO::ImageCache::Tile*>(tile));
 }
 
 void ty_oiio_tiles_get_error(ty_oiio_tiles* tiles, char* text, size_t text_size)
