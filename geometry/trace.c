@@ -163,15 +163,16 @@ static RTCGeometry create_instance_geometry(const ty_world* world, const ty_trac
     return geometry;
 }
 
-static void attach(ty_world* world, RTCGeometry geometry, uint32_t mask, uint32_t id)
+static void attach(ty_world* world, const ty_trace_object* object, RTCGeometry geometry, uint32_t id)
 {
     if (!geometry)
         return;
-    rtcSetGeometryMask(geometry, mask);
+    rtcSetGeometryMask(geometry, object->mask);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(world->scene, geometry, id);
     rtcReleaseGeometry(geometry);
     world->has_rest = true;
+    world->filters_rest = world->filters_rest || object->closed_subsurface;
 }
 
 // Geometry ids: the instance's among all.
@@ -181,7 +182,7 @@ static void attach_reference(ty_world* world)
         for (uint32_t i = 0; i < world->objects[k].count; i++)
         {
             const ty_trace_object* object = &world->objects[k];
-            attach(world, create_instance_geometry(world, object, i), object->mask, object->first + i);
+            attach(world, object, create_instance_geometry(world, object, i), object->first + i);
         }
 }
 
@@ -230,9 +231,9 @@ static ty_status attach_fast(ty_world* world, ty_error* error)
         if (moves && object->aggregate)
             status = ty_trace_wide_create(world, &i, 1, &object->wide, error);
         if (moves)
-            attach(world, ty_trace_create_moving_geometry(world, object), object->mask, i);
+            attach(world, object, ty_trace_create_moving_geometry(world, object), i);
         else if (!object->aggregate && box_area(object) > small)
-            attach(world, create_instance_geometry(world, object, 0), object->mask, i);
+            attach(world, object, create_instance_geometry(world, object, 0), i);
         else
             wide[count++] = i;
     }

@@ -28,7 +28,7 @@ void ty_world_clear_objects(ty_world* world)
     world->wide = NULL;
     world->has_rest = false;
     ty_trace_free_objects(world);
-    world->has_subsurface = false;
+    world->filters_rest = false;
     world->bounds = ty_bounds_empty();
 }
 
@@ -53,7 +53,6 @@ static ty_status append(ty_world* world, ty_trace_object* added, ty_motion motio
     added->first = world->instance_count;
     added->closed_subsurface = flags.closed_subsurface;
     added->mask = flags.mask;
-    world->has_subsurface = world->has_subsurface || flags.closed_subsurface;
     world->instance_count += added->count;
     world->objects[world->object_count] = *added;
     *object = world->object_count++;

@@ -43,11 +43,14 @@ RTCFilterFunctionN ty_trace_needed_filter(const ty_trace_object* object, const t
     return front_only || skip ? ty_trace_filter : NULL;
 }
 
-// On the fast path the filters of aggregates are set below their callbacks; this one serves Embree's instances.
+// On the fast path the filters of aggregates are set below; this one serves Embree's instances, which are plain
+// objects.
 static RTCFilterFunctionN top_filter(const ty_world* world, const ty_ray* ray)
 {
-    bool front_only = (ray->flags & TY_RAY_FRONT_ONLY) && world->has_subsurface;
+    bool front_only = (ray->flags & TY_RAY_FRONT_ONLY) && world->filters_rest;
     bool skip = ray->skip_object != TY_NONE && ray->skip_instance != TY_NONE;
+    if (skip && world->path == TY_TRACE_FAST)
+        skip = !world->objects[ray->skip_object].aggregate;
     return front_only || skip ? ty_trace_filter : NULL;
 }
 

@@ -45,7 +45,7 @@ struct ty_world
     bool has_rest;       // fast path: the scene is not empty
     bool use_avx512;
     ty_trace_path path;
-    bool has_subsurface; // some object honours TY_RAY_FRONT_ONLY
+    bool filters_rest; // something in the scene honours TY_RAY_FRONT_ONLY
 
     ty_trace_prototype* prototypes;
     uint32_t prototype_count, prototype_capacity;
