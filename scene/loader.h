@@ -151,6 +151,7 @@ typedef struct ty_loader
     ty_timeline timeline;
     ty_node* frame_node; // `frame:` of the file; NULL = the recipe does not tell it
     ty_seed seed;        // as written in `render`
+    bool checks_keys;    // tables are read for their mistakes alone: a material may take 30 ms to make
     bool world_changed;  // objects stand elsewhere than in the world
     int focus_object;    // of the camera, -1 = none
     int camera_capacity; // of the scene's camera_steps

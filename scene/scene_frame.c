@@ -168,8 +168,10 @@ static void check_entry(ty_loader* loader, int entry)
 void ty_frame_check_keys(ty_loader* loader)
 {
     ty_timeline* timeline = &loader->timeline;
+    loader->checks_keys = true;
     for (int i = 0; i < timeline->entry_count && !loader->tree.stopped; ++i)
         check_entry(loader, i);
+    loader->checks_keys = false;
     for (int i = 0; i < timeline->entry_count; ++i)
         timeline->entries[i].changed = false;
 }

@@ -69,7 +69,7 @@ static void read_surface(ty_loader* loader, ty_node* node, int index)
     static const char* const skip[] = {"model", NULL};
     ty_surface_def def;
     ty_error error;
-    if (ty_params_read(&loader->reader, node, ty_surface_params(), &def, skip) &&
+    if (ty_params_read(&loader->reader, node, ty_surface_params(), &def, skip) && !loader->checks_keys &&
         ty_material_create_surface(&def, &loader->scene->materials[index], &error) != TY_OK)
         report_impossible(loader, node, loader->scene->material_names[index], &error);
 }
@@ -79,7 +79,7 @@ static void read_cdrf(ty_loader* loader, ty_node* node, int index)
     static const char* const skip[] = {"model", NULL};
     ty_cdrf_def def;
     ty_error error;
-    if (ty_params_read(&loader->reader, node, ty_cdrf_params(), &def, skip) &&
+    if (ty_params_read(&loader->reader, node, ty_cdrf_params(), &def, skip) && !loader->checks_keys &&
         ty_material_create_cdrf(&def, &loader->scene->materials[index], &error) != TY_OK)
         report_impossible(loader, node, loader->scene->material_names[index], &error);
 }
@@ -111,8 +111,11 @@ static void read_material(ty_loader* loader, ty_node* node, int index)
 void ty_read_material(ty_loader* loader, int index)
 {
     loader->current_material = index;
-    ty_material_destroy(loader->scene->materials[index]);
-    loader->scene->materials[index] = NULL;
+    if (!loader->checks_keys)
+    {
+        ty_material_destroy(loader->scene->materials[index]);
+        loader->scene->materials[index] = NULL;
+    }
     int own = loader->material_map ? loader->material_map->count : 0;
     ty_node* node = index < own ? loader->material_map->items[index] : loader->gltf_materials[index - own];
     if (node)

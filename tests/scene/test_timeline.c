@@ -225,6 +225,27 @@ static void visibility_may_be_keyed(void** state)
     assert_int_equal(fixture_scene->rebuilds.worlds, 3);
 }
 
+// Thousands of keys, as baked animation has, cost no material each.
+static void many_keys_load_fast(void** state)
+{
+    (void)state;
+    enum
+    {
+        KEYS = 100000
+    };
+    size_t size = 0;
+    char* text = TY_ALLOC(char, KEYS * 24 + 1000);
+    size += (size_t)sprintf(
+        text, "%smaterials:\n  m: { model: surface, base_metalness: 1, specular_roughness: { keys: {", HEAD);
+    for (int i = 0; i < KEYS; ++i)
+        size += (size_t)sprintf(text + size, "%s%d: 0.%03d", i ? ", " : " ", i, 100 + i % 900);
+    sprintf(text + size, " } } }\n");
+    load(text, false); // a material each would be beyond the test's time
+    set_frame(777);
+    assert_int_equal(fixture_scene->rebuilds.materials, 1);
+    ty_free(text);
+}
+
 // The recipe of a frame, read by itself, is that frame; frames differ in their hashes, one frame does not.
 static void a_recipe_tells_its_frame(void** state)
 {
@@ -427,6 +448,7 @@ int main(void)
         FIXTURE_TEST(a_key_is_the_number),
         FIXTURE_TEST(only_what_changes_is_made_again),
         FIXTURE_TEST(visibility_may_be_keyed),
+        FIXTURE_TEST(many_keys_load_fast),
         FIXTURE_TEST(a_recipe_tells_its_frame),
         FIXTURE_TEST(still_scenes_say_nothing_of_frames),
         FIXTURE_TEST(seeds_move_only_when_asked),
