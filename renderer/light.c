@@ -155,6 +155,7 @@ bool ty_light_set_sample(const ty_light_set* set, const ty_light_point* at, floa
     if (emitter < 0)
         return false;
     out->shadows = true;
+    out->solid = false;
     out->visible = TY_MASK_SEEN;
     if (emitter >= set->light_count)
     {

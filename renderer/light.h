@@ -59,6 +59,8 @@ typedef struct ty_light_sample
     float pdf;       // per solid angle, the choice included
     bool delta;
     bool shadows;
+    bool solid;     // it lies on a surface of the world: a shadow ray goes to
+    ty_vec3 target; // this point, just above
     int group;
     unsigned visible; // ty_mask
 } ty_light_sample;

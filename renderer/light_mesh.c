@@ -278,6 +278,8 @@ bool ty_light_mesh_sample(const ty_light_set* set, const ty_light_mesh* mesh, co
     out->radiance = emitted(scene, material, &point, out->wi);
     out->pdf = probability * distance_sqr / (cosine * area_of(set, mesh, &to_world, hit.triangle));
     out->delta = false;
+    out->solid = true;
+    out->target = ty_offset_origin(&point, point.ng);
     return out->pdf > 0.0f && isfinite(out->pdf);
 }
 

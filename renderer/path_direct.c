@@ -69,6 +69,21 @@ void ty_path_add_limited(const ty_integrator* in, const ty_film_sample* met, ty_
         out->group[i] = ty_rgb_add(out->group[i], ty_rgb_scale(met->group[i], scale));
 }
 
+// A ray that begins beside its point would meet a small glowing body before the place that was sampled: it is turned
+// to end there.
+static void aim(const ty_light_sample* light, ty_ray* shadow)
+{
+    if (light->distance < TY_FLOAT_MAX)
+        shadow->t_max = light->distance * TY_LIGHT_REACH;
+    if (!light->solid)
+        return;
+    ty_vec3 way = ty_sub(light->target, shadow->origin);
+    float length = ty_length(way);
+    shadow->t_max = ty_dot(way, light->wi) > 0.0f ? length : 0.0f;
+    if (shadow->t_max > 0.0f)
+        shadow->direction = ty_mul(way, 1.0f / length);
+}
+
 void ty_path_direct_light(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const float u[4], ty_rgb beta,
                           ty_film_sample* out, ty_counters* counters)
 {
@@ -83,8 +98,7 @@ void ty_path_direct_light(const ty_integrator* in, const ty_path* p, const ty_bs
         return;
     ty_ray shadow;
     ty_bsdf_spawn(bsdf, light.wi, u[3], &shadow);
-    if (light.distance < TY_FLOAT_MAX)
-        shadow.t_max = light.distance * TY_LIGHT_REACH;
+    aim(&light, &shadow);
     if (light.shadows)
         value = ty_rgb_mul(value, ty_path_transmittance(in, shadow, counters));
     if (ty_rgb_is_black(value))

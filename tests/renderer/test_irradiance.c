@@ -288,6 +288,34 @@ static void glowing_aggregates_are_lights(void** state)
     remove("lamps.ply");
 }
 
+// A lamp of two millimetres, five centimetres away on a floor of metres: rays begin above the floor by more than the
+// lamp's own precision and must not meet it before they should.
+static void a_small_lamp_does_not_hide_itself(void** state)
+{
+    (void)state;
+    static const char* const strategies[] = {"mis", "light"};
+    for (int i = 0; i < 2; i++)
+    {
+        char text[2048];
+        snprintf(text, sizeof text,
+                 "tsuya: 1\nfilm: { size: [8, 8], filter: box, filter_width: 1, half: false }\n"
+                 "render: { samples: 256, max_depth: 1, seed: 2, light_sampling: %s }\n"
+                 "camera: { position: [0, 1, 0.0001], look_at: [0, 0, 0], vfov: 0.04 }\n"
+                 "assets: { floor: { shape: plane, size: [20, 0, 20] }, lamp: { shape: sphere, radius: 0.002, "
+                 "divisions: 128 } }\n"
+                 "materials: { m: { model: surface, base_color: 1, specular_weight: 0 }%s }\n"
+                 "objects: [ { mesh: floor, material: m }, { mesh: lamp, material: glow, translate: [0.05, 0.004, 0] } "
+                 "]\n",
+                 strategies[i], glowing);
+        ty_exr* exr = render_text(text);
+        mean_error found = mean_over(exr, 0, 0, 7, 7);
+        ty_exr_destroy(exr);
+        double d = sqrt(0.05 * 0.05 + 0.004 * 0.004), expected = 5 * 0.002 * 0.002 / (d * d) * 0.004 / d;
+        print_message("%s: %.4e +- %.1e expected %.4e\n", strategies[i], found.mean, found.error, expected);
+        assert_true(fabs(found.mean - expected) <= 3 * found.error + 3e-3 * expected);
+    }
+}
+
 // --- a sun of half a degree in a picture of the sky, 4096 x 2048 ---
 
 static double write_sky_with_sun(const char* path, double sky, double sun)
@@ -350,6 +378,7 @@ int main(void)
         cmocka_unit_test(textured_emission),
         cmocka_unit_test(two_hundred_lights),
         cmocka_unit_test(glowing_aggregates_are_lights),
+        cmocka_unit_test(a_small_lamp_does_not_hide_itself),
         cmocka_unit_test(a_small_bright_sun_converges),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
