@@ -59,6 +59,18 @@ static double between(const ty_track* track, int i, int component, double s)
     return v[0] + rise * s;
 }
 
+// The last key that is not after time; the first if all are.
+static int key_before(const ty_track* track, double time)
+{
+    int low = 0, high = track->key_count; // times[low] <= time < times[high]
+    while (high - low > 1)
+    {
+        int middle = (low + high) / 2;
+        *(track->times[middle] <= time ? &low : &high) = middle;
+    }
+    return low;
+}
+
 double ty_track_value(const ty_track* track, int component, ty_moment moment)
 {
     double time = 0.0;
@@ -75,24 +87,10 @@ double ty_track_value(const ty_track* track, int component, ty_moment moment)
         return values[0];
     if (time >= track->times[last])
         return values[(ptrdiff_t)last * track->components];
-    int low = 0, high = last; // times[low] <= time < times[high]
-    while (high - low > 1)
-    {
-        int middle = (low + high) / 2;
-        *(track->times[middle] <= time ? &low : &high) = middle;
-    }
+    int low = key_before(track, time), high = low + 1;
     if (!(time > track->times[low]))
         return values[(ptrdiff_t)low * track->components];
     return between(track, low, component, (time - track->times[low]) / (track->times[high] - track->times[low]));
-}
-
-// The key that a value comes from, for messages.
-static int key_before(const ty_track* track, ty_moment moment)
-{
-    int key = 0;
-    while (key + 1 < track->key_count && track->times[key + 1] <= moment.frame + moment.offset)
-        ++key;
-    return key;
 }
 
 static void check_outside(const ty_track* track, ty_moment moment, ty_error_list* errors)
@@ -120,7 +118,7 @@ static bool write_text(ty_node* node, const ty_track* track, double value)
 static bool evaluate(ty_track* track, ty_moment moment)
 {
     bool changed = false;
-    ty_place place = track->keyed_at[key_before(track, moment)];
+    ty_place place = track->keyed_at[key_before(track, moment.frame + moment.offset)];
     for (int c = 0; c < track->components; ++c)
     {
         ty_node* node = track->is_list ? track->value->items[c] : track->value;
