@@ -228,6 +228,72 @@ static void all_directions_are_an_environment(void** state)
     remove("all_round.exr");
 }
 
+// A film of some pixels of the scene, by some workers.
+static ty_exr* render_window(const ty_scene* scene, const int crop[4], int worker_count)
+{
+    ty_error error = {0};
+    ty_workers* workers;
+    ty_film* film;
+    ty_exr* exr;
+    ty_render_stats stats;
+    int samples = scene->render.samples;
+    ty_film_setup setup = {
+        .size = {scene->film.size[0], scene->film.size[1]}, .sample_end = samples, .aovs = TY_AOV_ALL};
+    memcpy(setup.crop, crop, sizeof setup.crop);
+    assert_int_equal(ty_workers_create(worker_count, &workers, &error), TY_OK);
+    assert_int_equal(ty_film_create(&setup, &film, &error), TY_OK);
+    ty_render_options render = {.sample_end = samples};
+    assert_int_equal(ty_render(scene, &render, workers, film, &stats, &error), TY_OK);
+    ty_film_write write = {.scene = scene, .sample_end = samples};
+    assert_int_equal(ty_film_to_exr(film, &write, &exr, &error), TY_OK);
+    ty_film_destroy(film);
+    ty_workers_destroy(workers);
+    return exr;
+}
+
+// Everything in motion: a window has the pixels of the whole, whoever renders it; the frame after the loop is the
+// first.
+static void windows_and_loops_keep_every_bit(void** state)
+{
+    (void)state;
+    char text[4096];
+    snprintf(text, sizeof text,
+             HEAD
+             "assets: { ball: { shape: sphere, radius: 0.1, divisions: 24 }, plate: { shape: box, size: [1, 0.01, 1] } "
+             "}\nmaterials: { m: { model: surface } }\nobjects:\n"
+             "  - { mesh: ball, material: m, translate: { keys: { 1: [0, 0.1, 0], 3: [0.2, 0.1, 0], 5: [0, 0.1, 0] }, "
+             "after: loop } }\n  - { mesh: plate, material: m }\n"
+             "turntable: { angle: { keys: { 1: 0, 5: 360 }, after: loop } }\n"
+             "camera: { position: [0, 0.5, 1], shutter: 0.7, f_stop: 2, blades: 5 }\n"
+             "lights: [ { type: environment, radiance: 0.5 } ]\n",
+             40, 30, 16, "");
+    ty_error error;
+    ty_error_list errors = {0};
+    ty_scene* scene;
+    ty_scene_options options = {0};
+    assert_int_equal(ty_file_write("moving.yaml", text, strlen(text), &error), TY_OK);
+    assert_int_equal(ty_scene_load("moving.yaml", &options, &scene, &errors), TY_OK);
+    assert_true(scene->moves);
+    ty_exr *whole = render_window(scene, (int[4]){0, 0, 39, 29}, 3),
+           *part = render_window(scene, (int[4]){7, 9, 30, 20}, 1);
+    for (int i = 0; i < part->channel_count; ++i)
+        for (int y = 0; y < 12; ++y)
+            assert_memory_equal((const float*)part->channels[i].pixels + y * 24,
+                                (const float*)whole->channels[i].pixels + (y + 9) * 40 + 7, 24 * sizeof(float));
+    assert_int_equal(ty_scene_set_frame(scene, 2, &errors), TY_OK);
+    ty_exr* second = render_window(scene, (int[4]){0, 0, 39, 29}, 1);
+    assert_memory_not_equal(second->channels[0].pixels, whole->channels[0].pixels, 40 * 30 * sizeof(float));
+    assert_int_equal(ty_scene_set_frame(scene, 5, &errors), TY_OK);
+    ty_exr* again = render_window(scene, (int[4]){0, 0, 39, 29}, 2);
+    assert_same_picture(whole, again);
+    ty_exr_destroy(whole);
+    ty_exr_destroy(part);
+    ty_exr_destroy(second);
+    ty_exr_destroy(again);
+    ty_scene_destroy(scene);
+    remove("moving.yaml");
+}
+
 static void pictures_tell_their_time(void** state)
 {
     (void)state;
@@ -252,6 +318,7 @@ int main(void)
         cmocka_unit_test(an_orthographic_ball_has_its_size),
         cmocka_unit_test(blurs_keep_their_light),
         cmocka_unit_test(all_directions_are_an_environment),
+        cmocka_unit_test(windows_and_loops_keep_every_bit),
         cmocka_unit_test(pictures_tell_their_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
