@@ -18,7 +18,7 @@ static double gain(const char* material, int samples)
     char text[2048];
     snprintf(text, sizeof text, furnace, samples, material);
     ty_exr* exr = render_text(text);
-    assert_true(pixel(exr, "A", 12, 12) == 1.0f);
+    assert_true(pixel(exr, "A", 12, 12) > 0.0f); // sheets let the sky through
     mean_error centre = mean_over(exr, 6, 6, 17, 17);
     ty_exr_destroy(exr);
     return centre.mean / 0.5;
@@ -38,6 +38,10 @@ static void white_things_vanish(void** state)
     check_vanishes("model: surface, base_color: 1, specular_weight: 1, specular_roughness: 0.3", 256);
     check_vanishes("model: surface, transmission_weight: 1, specular_roughness: 0, specular_ior: 1.5", 64);
     check_vanishes("model: surface, base_metalness: 1, base_color: 1, specular_roughness: 0", 16);
+    check_vanishes("model: surface, thin_walled: true, transmission_weight: 1, specular_roughness: 0", 64);
+    check_vanishes("model: surface, thin_walled: true, transmission_weight: 1, specular_roughness: 0.4", 256);
+    check_vanishes("model: surface, thin_walled: true, subsurface_weight: 1, subsurface_color: 1", 256);
+    check_vanishes("model: surface, base_color: 1, opacity: 0.4", 256);
     check_vanishes("model: cdrf, color: 1, specular_weight: 0, mean_free_path: 7.5, evaluate: depth", 64);
     check_vanishes("model: cdrf, color: 1, specular_weight: 0, mean_free_path: 30, evaluate: depth", 64);
     check_vanishes("model: cdrf, color: 1, specular_weight: 0, mean_free_path: 7.5, evaluate: probe", 64);
