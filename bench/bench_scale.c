@@ -149,7 +149,8 @@ int main(int argc, char** argv)
     ty_scene* scene = load(argv[1], count, &seconds);
     double peak = (double)ty_memory_peak(), bytes = (resident() - before - prototype) / (double)count;
     printf("%u grains: loaded and built in %.2f s (trees %.2f s), %.0f B a grain (%.0f of them the world's), ", count,
-           seconds, scene->build_seconds, bytes, (double)ty_world_memory(scene->world) / (double)count);
+           seconds, scene->build_seconds, bytes,
+           (double)(ty_world_memory(scene->world) - ty_world_memory(one->world)) / (double)count);
     printf("%.3f Msamples/s, peak %.0f MB\n", 1e-6 * samples_per_second(scene, samples), 1e-6 * peak);
     ty_scene_destroy(scene);
     ty_scene_destroy(one);
