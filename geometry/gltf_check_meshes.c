@@ -105,11 +105,13 @@ static ty_status check_primitive(ty_gltf_checker* c, const json_t* primitive, si
     return status == TY_OK ? check_indices(c, primitive, mesh, index, mode, position->count) : status;
 }
 
-// Triangles that share vertices are what files are made of; primitives read only the vertices that they use. Those of
-// an aggregate are all kept.
+// Triangles that share vertices are what files are made of; primitives read only the vertices that they use. Whole
+// meshes are shared too, by primitives of other materials. Those of an aggregate are all kept.
 static bool is_in_proportion(const ty_gltf_checker* c)
 {
-    return c->triangles <= c->byte_count && (!c->is_aggregate || c->vertices <= c->byte_count / 3);
+    if (c->is_aggregate)
+        return c->triangles <= c->byte_count && c->vertices <= c->byte_count / 3;
+    return c->triangles / 8 <= c->byte_count;
 }
 
 ty_status ty_gltf_check_meshes(ty_gltf_checker* c)

@@ -39,10 +39,12 @@ static const char* image_path(ty_loader* loader, const ty_asset* asset, int inde
 
 // --- text ---
 
+// Within what every colour of a surface may be; KHR_materials_specular goes beyond.
 static void add_rgb(ty_text* text, const float c[3])
 {
-    ty_text_format(text, "{\"color\": [%.9g, %.9g, %.9g], \"space\": \"lin_rec709\"}", (double)c[0], (double)c[1],
-                   (double)c[2]);
+    ty_text_format(text, "{\"color\": [%.9g, %.9g, %.9g], \"space\": \"lin_rec709\"}",
+                   (double)ty_clamp(c[0], 0.0f, 1.0f), (double)ty_clamp(c[1], 0.0f, 1.0f),
+                   (double)ty_clamp(c[2], 0.0f, 1.0f));
 }
 
 // A use of an image, by its number: see bind_images. From v downwards to v upwards; the middle of KHR_texture_transform
@@ -74,6 +76,9 @@ static void add_color(ty_text* text, const char* key, const float c[3], const ty
     add_rgb(text, c);
     if (by_vertex)
         ty_text_add(text, ", \"attribute\": \"color\"");
+    bool is_grey = !(c[0] < c[1]) && !(c[0] > c[1]) && !(c[1] < c[2]) && !(c[1] > c[2]);
+    if (!is_grey || (by_vertex && map->image >= 0))
+        ty_text_add(text, ", \"product\": \"rec709\"");
     if (map->image >= 0)
     {
         ty_text_add(text, ", ");

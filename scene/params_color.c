@@ -107,6 +107,14 @@ static bool read_factor(ty_reader* reader, const ty_node* map, const char* key, 
     return !node || ty_param_read_number(reader, node, &row, out);
 }
 
+static bool read_product(ty_reader* reader, const ty_node* map, ty_input* out)
+{
+    static const char* const spaces[] = {"acescg", "rec709", NULL};
+    static const ty_param row = {.name = "product", .type = TY_PARAM_ENUM, .unit = "", .choices = spaces};
+    ty_node* node = ty_node_get(map, "product");
+    return !node || ty_param_read(reader, node, &row, &out->product);
+}
+
 // Nothing is as good as a name.
 static bool is_name(ty_reader* reader, const ty_node* node, const char* key)
 {
@@ -138,7 +146,7 @@ static bool read_input_source(ty_reader* reader, ty_node* node, const ty_param* 
         if (out->texture_index < 0 || !attribute)
             return out->texture_index >= 0;
     }
-    static const char* const keys[] = {"attribute", "value", "scale", "offset", NULL};
+    static const char* const keys[] = {"attribute", "value", "scale", "offset", "product", NULL};
     if (!texture && !ty_params_check_keys(reader, node, keys, "an attribute"))
         return false;
     out->attribute = attribute->text;
@@ -148,8 +156,8 @@ static bool read_input_source(ty_reader* reader, ty_node* node, const ty_param* 
 
 bool ty_param_read_input(ty_reader* reader, ty_node* node, const ty_param* row, ty_input* out)
 {
-    static const char* const keys[] = {"texture", "attribute", "value", "scale", "offset", "mapping",
-                                       "uv",      "channel",   "size",  "blend", "wrap",   NULL};
+    static const char* const keys[] = {"texture", "attribute", "value", "scale", "offset",  "mapping", "uv",
+                                       "channel", "size",      "blend", "wrap",  "product", NULL};
     *out = ty_input_scalar(1.0f);
     bool is_color = row->type == TY_PARAM_COLOR_INPUT;
     if (is_color && (node->kind != TY_NODE_MAP || ty_node_find(node, "color") >= 0))
@@ -175,5 +183,6 @@ bool ty_param_read_input(ty_reader* reader, ty_node* node, const ty_param* row, 
     good &= read_input_value(reader, node, row, out);
     good &= read_factor(reader, node, "scale", &out->scale);
     good &= read_factor(reader, node, "offset", &out->offset);
+    good &= read_product(reader, node, out);
     return read_input_source(reader, node, row, out) && good;
 }

@@ -73,7 +73,8 @@ static void add_input(ty_text* out, const ty_param* row)
         ty_text_format(
             out,
             "{\"type\": \"object\", \"properties\": {\"%s\": {\"type\": \"string\"}, \"value\": {}, \"scale\": "
-            "{\"type\": \"number\"}, \"offset\": {\"type\": \"number\"}%s}, \"required\": [\"%s\"], "
+            "{\"type\": \"number\"}, \"offset\": {\"type\": \"number\"}, \"product\": {\"enum\": [\"acescg\", "
+            "\"rec709\"]}%s}, \"required\": [\"%s\"], "
             "\"additionalProperties\": false}",
             source, i ? "" : mapping, source);
     }

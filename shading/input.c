@@ -45,17 +45,39 @@ static ty_rgb plain_attribute(const ty_input* input, const ty_shading_context* c
     return find_attribute(input, context, point, &value) ? value : ty_rgb_grey(1.0f);
 }
 
+// ACEScg to linear Rec.709 and back, with Bradford's adaptation from D60 to D65.
+static ty_rgb to_rec709(ty_rgb c)
+{
+    return ty_rgb_make(1.70505099f * c.r - 0.62179212f * c.g - 0.08325887f * c.b,
+                       -0.13025642f * c.r + 1.14080474f * c.g - 0.01054832f * c.b,
+                       -0.02400336f * c.r - 0.12896898f * c.g + 1.15297233f * c.b);
+}
+
+static ty_rgb from_rec709(ty_rgb c)
+{
+    return ty_rgb_make(0.61309740f * c.r + 0.33952315f * c.g + 0.04737945f * c.b,
+                       0.07019372f * c.r + 0.91635388f * c.g + 0.01345240f * c.b,
+                       0.02061559f * c.r + 0.10956977f * c.g + 0.86981463f * c.b);
+}
+
+static ty_rgb product(const ty_input* input, ty_rgb a, ty_rgb b)
+{
+    if (input->product == TY_PRODUCT_ACESCG)
+        return ty_rgb_mul(a, b);
+    return from_rec709(ty_rgb_mul(to_rec709(a), to_rec709(b)));
+}
+
 ty_rgb ty_input_color(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)
 {
     if (input->texture_index >= 0)
     {
         ty_rgb texel = ty_input_texel(input, context, point);
         texel = ty_rgb_add(ty_rgb_grey(input->offset), ty_rgb_scale(texel, input->scale));
-        ty_rgb value = ty_rgb_mul(input->value, texel);
-        return input->attribute_index < 0 ? value : ty_rgb_mul(value, plain_attribute(input, context, point));
+        ty_rgb value = product(input, input->value, texel);
+        return input->attribute_index < 0 ? value : product(input, value, plain_attribute(input, context, point));
     }
     if (input->attribute_index >= 0)
-        return ty_rgb_mul(input->value, attribute_factor(input, context, point));
+        return product(input, input->value, attribute_factor(input, context, point));
     return input->value;
 }
 

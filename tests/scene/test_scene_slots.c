@@ -119,6 +119,27 @@ static void vertex_attributes_are_inputs(void** state)
     fixture_near(ty_input_float(&input, context, &middle), 0.1f * (0.25f * 2.0f + 0.25f * 4.0f + 0.5f * 10.0f), 1e-5f);
 }
 
+// Green paint over red vertices is black where files of Rec.709 mean it, and not quite in ACEScg.
+static void products_are_of_a_space(void** state)
+{
+    (void)state;
+    write_files();
+    load_world("tsuya: 1\nassets: { leaf: { mesh: leaf.ply } }\n"
+               "materials: { m: { model: surface, base_color: { attribute: color } } }\n"
+               "objects: [ { mesh: leaf, material: m } ]\n");
+    ty_surface_point red = point_on(0, 0.0f, 0.0f);
+    ty_input input = ty_input_make(ty_rgb_make(0.33952315f, 0.91635388f, 0.10956977f)); // Rec.709 green
+    input.attribute_index = 0;
+    ty_rgb mixed = ty_input_color(&input, &fixture_scene->shading, &red);
+    assert_true(mixed.r > 0.15f);
+    input.product = TY_PRODUCT_REC709;
+    ty_rgb black = ty_input_color(&input, &fixture_scene->shading, &red);
+    fixture_near(black.r, 0.0f, 1e-5f);
+    fixture_near(black.g, 0.0f, 1e-5f);
+    fixture_one_error("tsuya: 1\nmaterials: { m: { model: surface, base_color: { attribute: a, product: srgb } } }\n",
+                      2, 72, "not one of");
+}
+
 static void a_missing_vertex_attribute_is_named(void** state)
 {
     (void)state;
@@ -134,7 +155,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         FIXTURE_TEST(each_triangle_has_its_slots_material), FIXTURE_TEST(wrong_slots_are_named),
         FIXTURE_TEST(slots_left_over_are_listed),           FIXTURE_TEST(vertex_attributes_are_inputs),
-        FIXTURE_TEST(a_missing_vertex_attribute_is_named),
+        FIXTURE_TEST(a_missing_vertex_attribute_is_named),  FIXTURE_TEST(products_are_of_a_space),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

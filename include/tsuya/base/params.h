@@ -45,6 +45,13 @@ typedef enum ty_input_channel
     TY_CHANNEL_LUMINANCE,
 } ty_input_channel;
 
+// Where colours are multiplied: products of saturated ones differ between spaces.
+typedef enum ty_input_product
+{
+    TY_PRODUCT_ACESCG,
+    TY_PRODUCT_REC709, // as files mean it whose colours are of that space
+} ty_input_product;
+
 // A parameter of a surface: a constant, optionally times a texture or an attribute.
 typedef struct ty_input
 {
@@ -54,6 +61,7 @@ typedef struct ty_input
     float scale, offset;   // applied to what the texture or attribute gives: offset + scale * x
     int texture_index;     // set by scene/, -1 = none
     int attribute_index;   // set by scene/, -1 = none
+    int product;           // ty_input_product, of value, texture and attribute
     // Of textures alone.
     int mapping, channel;     // ty_input_mapping, ty_input_channel
     ty_vec2 uv_x, uv_y, uv_t; // the texture is looked up at uv_x * u + uv_y * v + uv_t
