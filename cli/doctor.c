@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `tsuya doctor`: whether this machine can render, and with what.
 #include "cli.h"
+#include "video.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -102,6 +103,7 @@ static ty_status run(const ty_arguments* arguments)
     check_trace(root);
     check_color(root);
     check_cache(root);
+    add(root, "video", true, ty_video_available() ? "ffmpeg is there" : "no ffmpeg in PATH: --video makes none");
     bool all = true;
     const char* name;
     json_t* item;
