@@ -126,20 +126,38 @@ void ty_flip_lab(const float opponent[3], float out[3])
 
 // --- passes ---
 
+// Strips of this many columns are summed at a time, weight by weight: the order of the sum of each pixel is that of the
+// weights, and the compiler sees plain rows.
+enum
+{
+    STRIP = 64,
+};
+
 static int clamp_index(int i, int count)
 {
     return i < 0 ? 0 : i >= count ? count - 1 : i;
 }
 
+static void add_scaled(const float* restrict from, float weight, int count, float* restrict sum)
+{
+    for (int x = 0; x < count; x++)
+        sum[x] += weight * from[x];
+}
+
 static void filter_row(const float* row, int width, const float* weights, int radius, float scale, float offset,
                        float* out)
 {
-    for (int x = 0; x < width; x++)
+    float padded[STRIP + 2 * TY_FLIP_RADIUS_MAX];
+    for (int x0 = 0; x0 < width; x0 += STRIP)
     {
-        float sum = 0.0f;
-        for (int k = -radius; k <= radius; k++)
-            sum += weights[k + radius] * row[clamp_index(x + k, width)];
-        out[x] = sum * scale + offset;
+        int count = width - x0 < STRIP ? width - x0 : STRIP;
+        float sum[STRIP] = {0.0f};
+        for (int i = 0; i < count + 2 * radius; i++)
+            padded[i] = row[clamp_index(x0 + i - radius, width)];
+        for (int k = 0; k <= 2 * radius; k++)
+            add_scaled(padded + k, weights[k], count, sum);
+        for (int x = 0; x < count; x++)
+            out[x0 + x] = sum[x] * scale + offset;
     }
 }
 
@@ -161,46 +179,79 @@ static void horizontal(void* context, int64_t begin, int64_t end, int worker)
         }
 }
 
-static float column_at(const ty_flip_filter* filter, kernel pass, kernel across, int radius, int x, int y)
+typedef enum product
 {
-    const float* weights = filter->kernels->weights[across];
-    const float* plane = filter->passes[pass];
-    float sum = 0.0f;
-    for (int k = -radius; k <= radius; k++)
-        sum += weights[k + radius] * plane[(int64_t)clamp_index(y + k, filter->height) * filter->width + x];
-    return sum;
-}
+    PRODUCT_ACHROMATIC,
+    PRODUCT_RED_GREEN,
+    PRODUCT_BLUE_YELLOW_A,
+    PRODUCT_BLUE_YELLOW_B,
+    PRODUCT_EDGE_X,
+    PRODUCT_EDGE_Y,
+    PRODUCT_POINT_X,
+    PRODUCT_POINT_Y,
+    PRODUCT_COUNT
+} product;
 
-static void filter_pixel(const ty_flip_filter* filter, int x, int y)
+// What runs along x and what along y.
+static const kernel products[PRODUCT_COUNT][2] = {
+    {KERNEL_ACHROMATIC, KERNEL_ACHROMATIC},
+    {KERNEL_RED_GREEN, KERNEL_RED_GREEN},
+    {KERNEL_BLUE_YELLOW_A, KERNEL_BLUE_YELLOW_A},
+    {KERNEL_BLUE_YELLOW_B, KERNEL_BLUE_YELLOW_B},
+    {KERNEL_EDGE, KERNEL_SMOOTH},
+    {KERNEL_SMOOTH, KERNEL_EDGE},
+    {KERNEL_POINT, KERNEL_SMOOTH},
+    {KERNEL_SMOOTH, KERNEL_POINT},
+};
+
+static void filter_columns(const ty_flip_filter* filter, int x0, int count, int y, float sum[PRODUCT_COUNT][STRIP])
 {
     const ty_flip_kernels* kernels = filter->kernels;
-    int wide = kernels->contrast_radius, narrow = kernels->feature_radius;
-    int64_t at = (int64_t)y * filter->width + x;
-    float opponent[3], lab[3];
-    opponent[0] = column_at(filter, KERNEL_ACHROMATIC, KERNEL_ACHROMATIC, wide, x, y);
-    opponent[1] = column_at(filter, KERNEL_RED_GREEN, KERNEL_RED_GREEN, wide, x, y);
-    opponent[2] = 0.0f;
-    for (int i = 0; i < 2; i++)
-        opponent[2] += kernels->blue_yellow[i] * column_at(filter, (kernel)(KERNEL_BLUE_YELLOW_A + i),
-                                                           (kernel)(KERNEL_BLUE_YELLOW_A + i), wide, x, y);
+    for (int p = 0; p < PRODUCT_COUNT; p++)
+    {
+        int radius = p >= PRODUCT_EDGE_X ? kernels->feature_radius : kernels->contrast_radius;
+        const float* weights = kernels->weights[products[p][1]];
+        for (int x = 0; x < count; x++)
+            sum[p][x] = 0.0f;
+        for (int k = 0; k <= 2 * radius; k++)
+        {
+            int64_t row = clamp_index(y + k - radius, filter->height);
+            add_scaled(filter->passes[products[p][0]] + row * filter->width + x0, weights[k], count, sum[p]);
+        }
+    }
+}
+
+static float length2(float x, float y)
+{
+    return sqrtf(x * x + y * y);
+}
+
+static void finish_pixel(const ty_flip_filter* filter, const float sum[PRODUCT_COUNT][STRIP], int x, int64_t at)
+{
+    const float* shares = filter->kernels->blue_yellow;
+    const float opponent[3] = {sum[PRODUCT_ACHROMATIC][x], sum[PRODUCT_RED_GREEN][x],
+                               shares[0] * sum[PRODUCT_BLUE_YELLOW_A][x] + shares[1] * sum[PRODUCT_BLUE_YELLOW_B][x]};
+    float lab[3];
     ty_flip_lab(opponent, lab);
     for (int i = 0; i < 3; i++)
         filter->planes[i][at] = lab[i];
-    float edge_x = column_at(filter, KERNEL_EDGE, KERNEL_SMOOTH, narrow, x, y);
-    float edge_y = column_at(filter, KERNEL_SMOOTH, KERNEL_EDGE, narrow, x, y);
-    float point_x = column_at(filter, KERNEL_POINT, KERNEL_SMOOTH, narrow, x, y);
-    float point_y = column_at(filter, KERNEL_SMOOTH, KERNEL_POINT, narrow, x, y);
-    filter->planes[TY_FLIP_EDGE][at] = sqrtf(edge_x * edge_x + edge_y * edge_y);
-    filter->planes[TY_FLIP_POINT][at] = sqrtf(point_x * point_x + point_y * point_y);
+    filter->planes[TY_FLIP_EDGE][at] = length2(sum[PRODUCT_EDGE_X][x], sum[PRODUCT_EDGE_Y][x]);
+    filter->planes[TY_FLIP_POINT][at] = length2(sum[PRODUCT_POINT_X][x], sum[PRODUCT_POINT_Y][x]);
 }
 
 static void vertical(void* context, int64_t begin, int64_t end, int worker)
 {
     (void)worker;
     const ty_flip_filter* filter = context;
+    float sum[PRODUCT_COUNT][STRIP];
     for (int64_t y = begin; y < end; y++)
-        for (int x = 0; x < filter->width; x++)
-            filter_pixel(filter, x, (int)y);
+        for (int x0 = 0; x0 < filter->width; x0 += STRIP)
+        {
+            int count = filter->width - x0 < STRIP ? filter->width - x0 : STRIP;
+            filter_columns(filter, x0, count, (int)y, sum);
+            for (int x = 0; x < count; x++)
+                finish_pixel(filter, (const float(*)[STRIP])sum, x, y * filter->width + x0 + x);
+        }
 }
 
 void ty_flip_filter_run(const ty_flip_filter* filter, ty_workers* workers)
