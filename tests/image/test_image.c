@@ -54,7 +54,7 @@ static void test_every_kind_of_exr_is_read(void** state)
     (void)state;
     ty_image first = read_ok(fixture("light.hdr"));
     ty_image_term(&first);
-    usleep(1000000); // its pool ends, see below
+    usleep(1000000);              // its pool ends, see below
     int threads = thread_count(); // libraries behind OpenImageIO have some of their own once it is loaded
     static const struct
     {
