@@ -113,7 +113,10 @@ static bool goes_through(const ty_integrator* in, const ty_sampler* sampler, con
     ty_sampler_4d(sampler, ty_group_pass(p->bounce, p->passed), u);
     bool through = u[p->passed % 4] < chance;
     if (through)
+    {
         p->beta = ty_rgb_mul(p->beta, ty_rgb_scale(t.through, 1.0f / chance));
+        ty_path_leave(in->scene, material, point, p->ray.direction, &p->media);
+    }
     else
         p->beta = ty_rgb_scale(p->beta, t.opacity / (1.0f - chance));
     return through;

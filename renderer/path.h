@@ -48,5 +48,9 @@ void ty_path_add_limited(const ty_integrator* in, const ty_film_sample* met, ty_
 void ty_path_find_media(const ty_scene* scene, ty_vec3 p, ty_media* out); // closed clear bodies around a point
 ty_rgb ty_path_absorbed(ty_rgb absorption, float distance);               // Beer's law
 void ty_path_pass(const ty_surface_point* point, float t, ty_ray* ray);   // t: of the hit at point
-// What arrives along a shadow ray past all that stands in its way.
-ty_rgb ty_path_transmittance(const ty_integrator* in, ty_ray ray, ty_counters* counters);
+// The ray goes straight through the surface of a clear body: on its way out it has left the medium, too.
+void ty_path_leave(const ty_scene* scene, const ty_material* material, const ty_surface_point* point, ty_vec3 direction,
+                   ty_media* media);
+// What arrives along a shadow ray past all that stands in its way, and through the medium in which it begins.
+ty_rgb ty_path_transmittance(const ty_integrator* in, ty_ray ray, ty_rgb absorption, float distance,
+                             ty_counters* counters);

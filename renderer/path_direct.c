@@ -99,12 +99,12 @@ void ty_path_direct_light(const ty_integrator* in, const ty_path* p, const ty_bs
     ty_ray shadow;
     ty_bsdf_spawn(bsdf, light.wi, u[3], &shadow);
     aim(&light, &shadow);
-    if (light.shadows)
-        value = ty_rgb_mul(value, ty_path_transmittance(in, shadow, counters));
+    bool beyond = (ty_dot(light.wi, bsdf->point.ng) > 0.0f) != bsdf->entering;
+    ty_rgb absorption = p->absorption[beyond];
+    value = ty_rgb_mul(value, light.shadows ? ty_path_transmittance(in, shadow, absorption, light.distance, counters)
+                                            : ty_path_absorbed(absorption, light.distance));
     if (ty_rgb_is_black(value))
         return;
-    bool beyond = (ty_dot(light.wi, bsdf->point.ng) > 0.0f) != bsdf->entering;
-    value = ty_rgb_mul(value, ty_path_absorbed(p->absorption[beyond], light.distance));
     ty_path_add(in, p->soft, light.group, ty_rgb_scale(ty_rgb_mul(beta, value), weight), out);
 }
 
@@ -126,6 +126,7 @@ void ty_path_light_along(const ty_integrator* in, const ty_path* p, const ty_bsd
                          float u, ty_rgb beta, ty_film_sample* out, ty_counters* counters)
 {
     ty_light_view view = ty_path_view(in, bsdf, sample);
+    view.absorption = p->absorption[0]; // a reflection stays on wo's side
     ty_ray ray;
     ty_bsdf_spawn(bsdf, sample->wi, u, &ray);
     ray.mask = TY_MASK_GLOSSY;

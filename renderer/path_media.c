@@ -79,16 +79,26 @@ void ty_path_pass(const ty_surface_point* point, float t, ty_ray* ray)
         ray->skip_distance -= t;
 }
 
-ty_rgb ty_path_transmittance(const ty_integrator* in, ty_ray ray, ty_counters* counters)
+static bool leaves(const ty_material* material, const ty_surface_point* point, ty_vec3 direction)
+{
+    return (ty_material_traits(material) & TY_TRAIT_MEDIUM) && ty_dot(direction, point->ng) >= 0.0f;
+}
+
+void ty_path_leave(const ty_scene* scene, const ty_material* material, const ty_surface_point* point, ty_vec3 direction,
+                   ty_media* media)
+{
+    if (!leaves(material, point, direction))
+        return;
+    ty_medium body = ty_medium_make(material, &scene->shading, point);
+    ty_media_cross(media, &body, false);
+}
+
+// The way through what lets pass on its own. *inside: how far it goes through the medium in which it begins.
+static ty_rgb through_surfaces(const ty_integrator* in, ty_ray ray, float* inside, ty_counters* counters)
 {
     const ty_scene* scene = in->scene;
     ty_rgb through = ty_rgb_grey(1.0f);
-    ray.mask = TY_MASK_SHADOW;
-    counters->shadow_rays++;
-    if (ty_world_occluded(scene->world, &ray))
-        return ty_rgb_grey(0.0f);
-    if (!in->has_transparent)
-        return through;
+    float way = 0.0f;
     ray.mask = TY_MASK_SHADOW_TRANSPARENT;
     for (int i = 0; i < TY_PATH_MAX_PASSED; ++i)
     {
@@ -98,12 +108,26 @@ ty_rgb ty_path_transmittance(const ty_integrator* in, ty_ray ray, ty_counters* c
         if (!ty_world_intersect(scene->world, &ray, &hit))
             return through;
         ty_world_surface(scene->world, &hit, &point);
-        ty_transparency t = ty_material_transparency(ty_scene_material(scene, hit.object, hit.instance, hit.triangle),
-                                                     &scene->shading, &point, ty_neg(ray.direction));
+        const ty_material* material = ty_scene_material(scene, hit.object, hit.instance, hit.triangle);
+        ty_transparency t = ty_material_transparency(material, &scene->shading, &point, ty_neg(ray.direction));
         through = ty_rgb_mul(through, t.through);
         if (ty_rgb_is_black(through))
             return through;
+        way += hit.t;
+        if (leaves(material, &point, ray.direction))
+            *inside = ty_min(*inside, way);
         ty_path_pass(&point, hit.t, &ray);
     }
     return ty_rgb_grey(0.0f);
+}
+
+ty_rgb ty_path_transmittance(const ty_integrator* in, ty_ray ray, ty_rgb absorption, float distance,
+                             ty_counters* counters)
+{
+    ray.mask = TY_MASK_SHADOW;
+    counters->shadow_rays++;
+    if (ty_world_occluded(in->scene->world, &ray))
+        return ty_rgb_grey(0.0f);
+    ty_rgb through = in->has_transparent ? through_surfaces(in, ray, &distance, counters) : ty_rgb_grey(1.0f);
+    return ty_rgb_mul(through, ty_path_absorbed(absorption, distance));
 }

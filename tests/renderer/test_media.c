@@ -219,6 +219,87 @@ static void lamps_within_are_dimmed(void** state)
     }
 }
 
+// The same lamp above the water, whose surface is there for half of the light: past it nothing is absorbed.
+static void water_ends_at_its_open_surface(void** state)
+{
+    (void)state;
+    static const char* const sampling[] = {"light", "bsdf", "mis"};
+    for (int i = 0; i < 3; i++)
+    {
+        char text[2048];
+        double error, sigma = -log(0.5) / 0.1, expected = 0;
+        snprintf(
+            text, sizeof text,
+            "tsuya: 1\n"
+            "film: { size: [8, 8], filter: box, filter_width: 1, half: false }\n"
+            "render: { samples: 1024, max_depth: 1, seed: 3, light_sampling: %s }\n"
+            "camera: { position: [0, 0.05, 0.0001], look_at: [0, 0, 0], vfov: 0.1 }\n"
+            "assets: { floor: { shape: disc, radius: 0.01 }, tank: { shape: box, size: [1, 0.1, 1] } }\n"
+            "materials:\n"
+            "  white: { model: surface, base_color: 1, specular_weight: 0 }\n"
+            "  water: { model: surface, transmission_weight: 1, specular_roughness: 0, specular_ior: 1.33, "
+            "transmission_color: 0.5, transmission_depth: 0.1, opacity: 0.5 }\n"
+            "objects: [ { mesh: floor, material: white }, { mesh: tank, material: water } ]\n"
+            "lights: [ { type: sphere, center: [0, 0.3, 0], radius: 0.03, radiance: 40, camera_visible: false } ]\n",
+            sampling[i]);
+        double found = render_mean(text, &error);
+        for (int k = 0; k < 1000; k++)
+            expected += 0.5 * 40 * 0.01 / 1000 * exp(-sigma * 0.1 / sqrt(1 - (k + 0.5) / 1000 * 0.01));
+        expected *= exp(-sigma * 0.05);
+        print_message("lamp above water, %s: %.5f +- %.5f expected %.5f\n", sampling[i], found, error, expected);
+        assert_true(fabs(found - expected) <= 3.5 * error + 1e-4 * expected);
+    }
+}
+
+// A tinted block that bends nothing under a white sky: what comes in through its surface is absorbed to the far side,
+// whether it leaves through the surface or where that lets pass; what came in where it lets pass is not.
+static void no_medium_follows_a_ray_out(void** state)
+{
+    (void)state;
+    char text[1024];
+    double error, expected = 0.5 + 0.5 * 0.3;
+    snprintf(text, sizeof text,
+             HEAD "camera: { position: [0, 0, 0.3], look_at: [0, 0, 0], vfov: 0.01 }\n"
+                  "assets: { block: { shape: box, size: [0.2, 0.2, 0.005] } }\n"
+                  "materials: { m: { model: surface, transmission_weight: 1, specular_roughness: 0, specular_ior: 1, "
+                  "transmission_color: 0.3, transmission_depth: 0.01, opacity: 0.5 } }\n"
+                  "objects: [ { mesh: block, material: m } ]\n"
+                  "lights: [ { type: environment, radiance: 1 } ]\n",
+             512);
+    double found = render_mean(text, &error);
+    print_message("block of half a surface: %.5f +- %.5f expected %.5f\n", found, error, expected);
+    assert_true(fabs(found - expected) <= 3.5 * error + 1e-4);
+}
+
+// The gloss of a translucent body under water, which the camera's path gathers by a ray of its own.
+static void gloss_under_water_is_dimmed(void** state)
+{
+    (void)state;
+    static const char* const sampling[] = {"light", "mis", "bsdf"};
+    double found[3], error[3];
+    for (int i = 0; i < 3; i++)
+    {
+        char text[2048];
+        snprintf(
+            text, sizeof text,
+            "tsuya: 1\n"
+            "film: { size: [8, 8], filter: box, filter_width: 1, half: false }\n"
+            "render: { samples: 1024, max_depth: 1, seed: 3, light_sampling: %s }\n"
+            "camera: { position: [0, 0.45, 0.7], look_at: [0, 0.05, 0.06], vfov: 8 }\n"
+            "assets: { ball: { shape: sphere, radius: 0.15, divisions: 48 }, tank: { shape: box, size: [3, 3, 3] } }\n"
+            "materials:\n"
+            "  berry: { model: cdrf, color: 0.01, specular_roughness: 0.3, specular_ior: 2 }\n"
+            "  water: { model: surface, transmission_weight: 1, specular_roughness: 0, specular_ior: 1.33, "
+            "transmission_color: 0.4, transmission_depth: 0.25 }\n"
+            "objects: [ { mesh: ball, material: berry }, { mesh: tank, material: water } ]\n"
+            "lights: [ { type: rectangle, center: [0, 1, -0.2], target: [0, 0, 0], size: [0.6, 0.6], radiance: 8 } ]\n",
+            sampling[i]);
+        found[i] = render_mean(text, &error[i]);
+        print_message("gloss under water, %s: %.6f +- %.6f\n", sampling[i], found[i], error[i]);
+        assert_true(found[i] > 5 * error[i] && fabs(found[i] - found[0]) <= 3.5 * (error[i] + error[0]));
+    }
+}
+
 // --- straight through ---
 
 static double shaded_floor(const char* material, const char* height, const char* light, const char* sampling,
@@ -312,6 +393,9 @@ int main(void)
         cmocka_unit_test(a_core_needs_no_priority),
         cmocka_unit_test(camera_within),
         cmocka_unit_test(lamps_within_are_dimmed),
+        cmocka_unit_test(water_ends_at_its_open_surface),
+        cmocka_unit_test(no_medium_follows_a_ray_out),
+        cmocka_unit_test(gloss_under_water_is_dimmed),
         cmocka_unit_test(shadows_are_as_transparent),
         cmocka_unit_test(panes_cast_clear_shadows),
         cmocka_unit_test(alpha_is_the_share_that_stops),
