@@ -27,7 +27,7 @@ static void set_default(void* def)
 }
 
 static const char* const kinds[] = {"sphere", "ellipsoid", "box",   "cylinder", "torus", "plane", "disc",
-                                    "bowl",   "dome",      "sweep", "stone",    "lathe", NULL};
+                                    "bowl",   "dome",      "sweep", "stone",    "lathe", "tube",  NULL};
 
 #define LENGTH(field, help)                                                                                            \
     {                                                                                                                  \
@@ -53,7 +53,7 @@ static const ty_param_table point_table = {
 
 static const ty_param rows[] = {
     {"shape", TY_PARAM_ENUM, "", 0, 0, kinds, NULL, offsetof(ty_shape_def, kind), "which shape", true},
-    LENGTH(radius, "sphere, cylinder, disc, dome; torus: to the tube's centre; bowl: outside of the rim"),
+    LENGTH(radius, "sphere, cylinder, disc, dome, tube; torus: to the tube's centre; bowl: outside of the rim"),
     {"size", TY_PARAM_FLOAT3, "m", 0, 1e4, NULL, NULL, offsetof(ty_shape_def, size),
      "ellipsoid, stone: semi-axes; box, plane: half extents; sweep: half width, wall height, half depth", false},
     LENGTH(height, "cylinder, bowl, dome"),
@@ -69,6 +69,8 @@ static const ty_param rows[] = {
     {"variant", TY_PARAM_INT, "", 0, 1000000, NULL, NULL, offsetof(ty_shape_def, variant), "stone: which one", false},
     {"profile", TY_PARAM_LIST, "", 0, 0, NULL, &point_table, offsetof(ty_shape_def, profile),
      "lathe: points turned about y; closed from axis to axis, or when it ends where it began", false},
+    {"points", TY_PARAM_POINTS, "m", -1e4, 1e4, NULL, NULL, offsetof(ty_shape_def, points),
+     "tube: a smooth curve goes through them, straight on at its ends", false},
     {"divisions", TY_PARAM_INT, "", 8, 4096, NULL, NULL, offsetof(ty_shape_def, divisions),
      "segments around; the other direction follows the shape", false},
 };
@@ -163,6 +165,8 @@ static ty_status check_extents(const ty_shape_def* def, ty_error* error)
         return check_bowl(def, error);
     case TY_SHAPE_LATHE:
         return ty_shape_check_lathe(def, error);
+    case TY_SHAPE_TUBE:
+        return ty_shape_check_tube(def, error);
     case TY_SHAPE_SPHERE:
     case TY_SHAPE_DISC:
         break;
@@ -172,7 +176,7 @@ static ty_status check_extents(const ty_shape_def* def, ty_error* error)
 
 static ty_status check_def(const ty_shape_def* def, ty_error* error)
 {
-    if (def->kind < 0 || def->kind > TY_SHAPE_LATHE)
+    if (def->kind < 0 || def->kind > TY_SHAPE_TUBE)
         return ty_error_set(error, TY_BAD_INPUT, "shape: %d: no such shape", def->kind);
     if (def->divisions < 8 || def->divisions > 4096)
         return ty_error_set(error, TY_BAD_INPUT, "divisions: %d: must be within 8 .. 4096", def->divisions);
@@ -225,6 +229,9 @@ static void build_kind(ty_shape_build* build, const ty_shape_def* def)
         break;
     case TY_SHAPE_LATHE:
         ty_shape_build_lathe(build, def);
+        break;
+    case TY_SHAPE_TUBE:
+        ty_shape_build_tube(build, def);
         break;
     }
 }

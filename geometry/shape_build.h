@@ -89,7 +89,9 @@ void ty_shape_build_disc(ty_shape_build* build, const ty_shape_def* def);
 void ty_shape_build_dome(ty_shape_build* build, const ty_shape_def* def);
 void ty_shape_build_bowl(ty_shape_build* build, const ty_shape_def* def);
 void ty_shape_build_lathe(ty_shape_build* build, const ty_shape_def* def);
+void ty_shape_build_tube(ty_shape_build* build, const ty_shape_def* def);
 
 TY_CHECKED ty_status ty_shape_check_bowl(const ty_shape_def* def, ty_error* error);
 TY_CHECKED ty_status ty_shape_check_lathe(const ty_shape_def* def, ty_error* error);
+TY_CHECKED ty_status ty_shape_check_tube(const ty_shape_def* def, ty_error* error);
 float ty_shape_bowl_distance(const ty_shape_def* def, ty_vec3 p);

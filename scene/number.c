@@ -108,6 +108,7 @@ void ty_param_expected(const ty_param* row, ty_text* out)
         [TY_PARAM_VECTOR_INPUT] = "{ texture, value, scale, offset, uv, mapping } or { attribute, ... }",
         [TY_PARAM_GROUP] = "a mapping",
         [TY_PARAM_LIST] = "a list of mappings",
+        [TY_PARAM_POINTS] = "a list of points [x, y, z]",
         [TY_PARAM_NAMES] = "a mapping of names to names",
         [TY_PARAM_STRINGS] = "a list of texts",
     };
@@ -147,6 +148,7 @@ const char* ty_param_type_name(ty_param_type type)
         [TY_PARAM_VECTOR_INPUT] = "vector input",
         [TY_PARAM_GROUP] = "mapping",
         [TY_PARAM_LIST] = "list",
+        [TY_PARAM_POINTS] = "points",
         [TY_PARAM_NAMES] = "names",
         [TY_PARAM_STRINGS] = "texts",
     };
@@ -201,6 +203,7 @@ void ty_param_value_text(const ty_param* row, const void* def, ty_text* out)
     case TY_PARAM_VECTOR_INPUT: // none unless written
     case TY_PARAM_GROUP:
     case TY_PARAM_LIST:
+    case TY_PARAM_POINTS:
     case TY_PARAM_NAMES:
     case TY_PARAM_STRINGS:
         break;

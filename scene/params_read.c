@@ -170,6 +170,27 @@ static bool read_list(ty_reader* reader, ty_node* node, const ty_param* row, ty_
     return good;
 }
 
+static bool read_points(ty_reader* reader, const ty_node* node, const ty_param* row, ty_param_list* out)
+{
+    if (node->kind != TY_NODE_LIST)
+    {
+        ty_param_report_type(reader, node, row);
+        return false;
+    }
+    if (node->count > MAX_LIST)
+    {
+        ty_report(reader->errors, node->place, TY_BAD_INPUT, "'%s': more than %d entries", row->name, MAX_LIST);
+        return false;
+    }
+    ty_vec3* points = TY_ARENA_ALLOC(reader->arena, ty_vec3, node->count);
+    const ty_param each = {row->name, TY_PARAM_FLOAT3, row->unit, row->minimum, row->maximum, NULL, NULL, 0, "", false};
+    bool good = true;
+    for (int i = 0; i < node->count; ++i)
+        good &= !node->items[i]->bad && ty_param_read_numbers(reader, node->items[i], &each, &points[i].x, 3);
+    *out = (ty_param_list){points, node->count};
+    return good;
+}
+
 static bool read_names(ty_reader* reader, ty_node* node, const ty_param* row, ty_param_list* out)
 {
     if (node->kind != TY_NODE_MAP)
@@ -251,6 +272,8 @@ bool ty_param_read(ty_reader* reader, ty_node* node, const ty_param* row, void* 
         return read_keys(reader, node, row->group, field, NULL);
     case TY_PARAM_LIST:
         return read_list(reader, node, row, field);
+    case TY_PARAM_POINTS:
+        return read_points(reader, node, row, field);
     case TY_PARAM_NAMES:
         return read_names(reader, node, row, field);
     case TY_PARAM_STRINGS:

@@ -143,6 +143,11 @@ static void add_type(ty_text* out, const ty_param* row)
     case TY_PARAM_LIST:
         ty_text_format(out, "{\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/%s\"}}", row->group->name);
         break;
+    case TY_PARAM_POINTS:
+        ty_text_add(out, "{\"type\": \"array\", \"items\": ");
+        add_numbers(out, row, "number", 3);
+        ty_text_add(out, "}");
+        break;
     case TY_PARAM_NAMES:
         ty_text_add(out, "{\"type\": \"object\", \"additionalProperties\": {\"type\": \"string\"}}");
         break;

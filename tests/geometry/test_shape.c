@@ -1,45 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Built-in shapes: closed and outward, their area, volume, curvature, normals and uv, the space inside them, and what
 // is said about impossible sizes.
-#include <base/cmocka_all.h>
+#include "shape_meshes.h"
 #include <string.h>
 #include <tsuya/base/rng.h>
-#include <tsuya/geometry/shape.h>
-
-static ty_shape_def shape_of(int kind)
-{
-    ty_shape_def def = ty_shape_def_default();
-    def.kind = kind;
-    def.divisions = 96;
-    if (kind == TY_SHAPE_SWEEP)
-    {
-        def.size = ty_vec3_make(1.2f, 0.8f, 0.6f);
-        def.rounding = 0.25f;
-    }
-    if (kind == TY_SHAPE_ELLIPSOID)
-        def.size = ty_vec3_make(0.03f, 0.0125f, 0.018f);
-    return def;
-}
-
-static ty_mesh* make(const ty_shape_def* def)
-{
-    ty_mesh* mesh = NULL;
-    ty_error error = {0};
-    ty_status status = ty_shape_create(def, &mesh, &error);
-    if (status != TY_OK)
-        print_message("%s\n", error.text);
-    assert_int_equal(status, TY_OK);
-    return mesh;
-}
-
-static ty_mesh_topology topology_of(const ty_shape_def* def)
-{
-    ty_mesh* mesh = make(def);
-    ty_mesh_topology topology;
-    ty_mesh_analyse(mesh, &topology);
-    ty_mesh_destroy(mesh);
-    return topology;
-}
 
 static bool is_open(int kind)
 {
@@ -47,32 +11,6 @@ static bool is_open(int kind)
 }
 
 // --- every shape ---
-
-static void check_surface(const ty_mesh* mesh)
-{
-    for (uint32_t i = 0; i < mesh->vertex_count; i++)
-    {
-        assert_float_equal(ty_length(mesh->normals[i]), 1.0f, 1e-5f);
-        assert_float_equal(ty_length(mesh->direction_1[i]), 1.0f, 1e-5f);
-        assert_float_equal(ty_dot(mesh->normals[i], mesh->direction_1[i]), 0.0f, 1e-5f);
-        assert_true(mesh->curvature_1[i] >= mesh->curvature_2[i]);
-        assert_true(mesh->uvs[i].x >= 0.0f && mesh->uvs[i].x <= 1.0f);
-        assert_true(mesh->uvs[i].y >= 0.0f && mesh->uvs[i].y <= 1.0f);
-    }
-    for (uint32_t t = 0; t < mesh->triangle_count; t++)
-    {
-        const uint32_t* c = mesh->triangles[t];
-        const ty_vec3* p = mesh->positions;
-        ty_vec3 face = ty_normalize(ty_cross(ty_sub(p[c[1]], p[c[0]]), ty_sub(p[c[2]], p[c[0]])));
-        for (int k = 0; k < 3; k++)
-        {
-            assert_true(ty_dot(face, mesh->normals[c[k]]) > 0.95f);
-            // No triangle spans the seam.
-            float du = fabsf(mesh->uvs[c[k]].x - mesh->uvs[c[(k + 1) % 3]].x);
-            assert_true(du < 0.5f || mesh->triangle_count < 200);
-        }
-    }
-}
 
 static void test_shapes_are_watertight_and_outward(void** state)
 {
@@ -597,7 +535,7 @@ static void test_impossible_sizes_name_the_field(void** state)
         def.field = (value);                                                                                           \
         assert_refused(def, name);                                                                                     \
     } while (0)
-    REFUSED(TY_SHAPE_SPHERE, kind, TY_SHAPE_LATHE + 1, "shape");
+    REFUSED(TY_SHAPE_SPHERE, kind, TY_SHAPE_TUBE + 1, "shape");
     REFUSED(TY_SHAPE_SPHERE, kind, -1, "shape");
     REFUSED(TY_SHAPE_SPHERE, divisions, 7, "divisions");
     REFUSED(TY_SHAPE_SPHERE, divisions, 4097, "divisions");
@@ -706,16 +644,17 @@ static void test_parameters_match_the_struct(void** state)
     for (int i = 0; i < table->count; i++)
     {
         const ty_param* p = &table->params[i];
-        size_t size = p->type == TY_PARAM_FLOAT3 ? 12 : p->type == TY_PARAM_LIST ? sizeof(void*) : 4;
+        bool list = p->type == TY_PARAM_LIST || p->type == TY_PARAM_POINTS;
+        size_t size = p->type == TY_PARAM_FLOAT3 ? 12 : list ? sizeof(void*) : 4;
         assert_memory_equal((char*)&def + p->offset, (char*)&expected + p->offset, size);
-        covered += p->type == TY_PARAM_LIST ? sizeof(ty_param_list) : size;
+        covered += list ? sizeof(ty_param_list) : size;
         if (p->type != TY_PARAM_ENUM)
             continue;
         assert_string_equal(p->name, "shape");
         int choices = 0;
         while (p->choices[choices])
             choices++;
-        assert_int_equal(choices, TY_SHAPE_LATHE + 1);
+        assert_int_equal(choices, TY_SHAPE_TUBE + 1);
         assert_string_equal(p->choices[TY_SHAPE_BOWL], "bowl");
         assert_string_equal(p->choices[TY_SHAPE_SWEEP], "sweep");
         assert_string_equal(p->choices[TY_SHAPE_TORUS], "torus");

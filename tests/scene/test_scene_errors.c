@@ -200,6 +200,9 @@ static void assets_and_materials(void** state)
     fixture_one_error("tsuya: 1\nassets: { a: { msh: x.ply } }\n", 2, 14, "asset 'a': expected one of the keys");
     fixture_one_error("tsuya: 1\nassets: { a: { mesh: x.ply } }\n", 2, 22, "mesh: no file 'x.ply' (tried: ");
     fixture_one_error("tsuya: 1\nassets: { a: { shape: cube } }\n", 2, 23, "'cube' is not one of:");
+    fixture_one_error("tsuya: 1\nassets: { a: { shape: tube, points: 3 } }\n", 2, 37, "expected a list of points");
+    fixture_one_error("tsuya: 1\nassets: { a: { shape: tube, points: [[0, 0, 0], [1, 2]] } }\n", 2, 49,
+                      "three numbers [x, y, z] -10000..10000 m, got a list of 2");
     fixture_one_error("tsuya: 1\nassets: { a: { aggregate: { kind: agregate } } }\n", 2, 35,
                       "did you mean 'aggregate'?");
     fixture_one_error("tsuya: 1\nassets: { a: { aggregate: { count: 3 } } }\n", 2, 27, "missing key 'kind'");

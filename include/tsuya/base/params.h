@@ -25,6 +25,7 @@ typedef enum ty_param_type
     TY_PARAM_VECTOR_INPUT, // ty_input with three signed numbers of a texture: -1 + 2 * texel unless said
     TY_PARAM_GROUP,        // a nested struct in place, described by group
     TY_PARAM_LIST,         // ty_param_list of structs described by group
+    TY_PARAM_POINTS,       // ty_param_list of ty_vec3: a list of [x, y, z]
     TY_PARAM_NAMES,        // ty_param_list of ty_param_name: a mapping of names to names
     TY_PARAM_STRINGS,      // ty_param_strings: a list of texts, or one
 } ty_param_type;

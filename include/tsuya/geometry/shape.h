@@ -18,6 +18,7 @@ typedef enum ty_shape_kind
     TY_SHAPE_SWEEP,     // size: a floor that curves up into a wall behind (photographer's sweep); open
     TY_SHAPE_STONE,     // size = semi-axes, relief, variant: a weathered stone
     TY_SHAPE_LATHE,     // profile: a solid turned about y, or a surface where the profile is open
+    TY_SHAPE_TUBE,      // radius, points: a round tube with round ends along a smooth curve through points
 } ty_shape_kind;
 
 typedef struct ty_shape_point
@@ -42,6 +43,7 @@ typedef struct ty_shape_def
     float relief;          // of a stone, against its size, 0..0.5
     int variant;           // which stone
     ty_param_list profile; // of ty_shape_point, borrowed: from the axis to the axis, or back to the first, it is closed
+    ty_param_list points;  // of ty_vec3, m, borrowed
     int divisions;         // around; the other direction follows the shape, 8..4096
 } ty_shape_def;
 
@@ -55,8 +57,8 @@ const ty_param_table* ty_shape_params(void);
 TY_CHECKED ty_status ty_shape_create(const ty_shape_def* def, ty_mesh** out, ty_error* error);
 
 // Signed distance (negative inside) to the *interior* of a vessel: the space to be filled. For BOWL the hollow below
-// the rim; for the closed solids the solid itself; open shapes, stones and lathes have none: TY_FLOAT_MAX. Exact or a
-// lower bound of the distance inside, 1-Lipschitz. A bowl has no wall above its rim: there the distance is to the lip,
-// negative within the rim's radius and positive beyond, and jumps between. def must be one that ty_shape_create
+// the rim; for the closed solids the solid itself; open shapes, stones, lathes and tubes have none: TY_FLOAT_MAX. Exact
+// or a lower bound of the distance inside, 1-Lipschitz. A bowl has no wall above its rim: there the distance is to the
+// lip, negative within the rim's radius and positive beyond, and jumps between. def must be one that ty_shape_create
 // accepts. Any thread.
 float ty_shape_interior_distance(const ty_shape_def* def, ty_vec3 p);
