@@ -252,7 +252,7 @@ static void bring_camera(ty_loader* loader, const ty_node* object, const ty_asse
         ty_node_add(&loader->tree, section, made->keys[i], made->items[i]);
 }
 
-// Where an object stands at this frame; what is wrong with it is reported when it is read.
+// Where an object stands; what is wrong with it is reported when it is read.
 static ty_affine object_map(const ty_node* node)
 {
     static const char* const keys[] = {"translate", "rotate", "scale"};
@@ -272,6 +272,20 @@ static ty_affine object_map(const ty_node* node)
     return ty_affine_from_trs(v[0], ty_quat_euler(angles), v[2]);
 }
 
+// Lights and cameras stay where the object stands at the timeline's start: at the present frame they would stand
+// elsewhere in every picture of a list.
+static ty_affine placed_at_start(ty_loader* loader, int object, const ty_node* node)
+{
+    const ty_scene* scene = loader->scene;
+    int entry = ty_timeline_find(&loader->timeline, TY_SECTION_OBJECT, object);
+    if (entry < 0)
+        return object_map(node);
+    ty_timeline_evaluate(&loader->timeline, entry, (ty_moment){scene->timeline.start, 0.0}, NULL);
+    ty_affine map = object_map(node);
+    ty_timeline_evaluate(&loader->timeline, entry, (ty_moment){scene->frame, 0.0}, NULL);
+    return map;
+}
+
 void ty_gltf_expand(ty_loader* loader)
 {
     open_all(loader);
@@ -283,7 +297,7 @@ void ty_gltf_expand(ty_loader* loader)
         int asset = name && name->kind == TY_NODE_SCALAR ? ty_node_find(map, name->text) : -1;
         if (asset < 0 || !loader->assets[asset].gltf)
             continue;
-        ty_affine placed = object_map(list->items[i]);
+        ty_affine placed = placed_at_start(loader, i, list->items[i]);
         bring_lights(loader, list->items[i], &loader->assets[asset], &placed);
         bring_camera(loader, list->items[i], &loader->assets[asset], &placed);
     }

@@ -252,6 +252,7 @@ void ty_set_mesh_times(ty_loader* loader)
         if (!show(loader, asset) || !asset->sequence->changed)
             continue;
         ty_complete_mesh(loader, asset->mesh);
+        asset->bounds_known = false;
         loader->world_changed = true;
     }
 }

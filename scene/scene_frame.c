@@ -111,8 +111,8 @@ static bool same_error(const ty_error* a, const ty_error* b)
            strcmp(a->text, b->text) == 0;
 }
 
-// What an entry says at one key it says at the next one too.
-static void forget_repeated(ty_error_list* errors, int from)
+// What an entry says at one key it says at the next one too, and at every pose.
+void ty_forget_repeated(ty_error_list* errors, int from)
 {
     int kept = from;
     for (int i = from; i < errors->count; ++i)
@@ -145,7 +145,7 @@ static void check_at(ty_loader* loader, int entry, double frame)
     int before = loader->errors->count;
     ty_timeline_evaluate(&loader->timeline, entry, (ty_moment){frame, 0.0}, NULL);
     read_entry(loader, &loader->timeline.entries[entry]);
-    forget_repeated(loader->errors, before);
+    ty_forget_repeated(loader->errors, before);
 }
 
 static void check_entry(ty_loader* loader, int entry)
@@ -228,6 +228,7 @@ static void go_to(ty_loader* loader, double frame)
                 section_changed(&loader->timeline, TY_SECTION_TURNTABLE);
     rebuilds->cameras += view;
     read_changed(loader);
+    ty_set_mesh_times(loader); // ahead of the poses: a camera may focus on what it shows
     ty_pose_scene(loader);
 }
 
@@ -239,7 +240,6 @@ ty_status ty_scene_set_frame(ty_scene* scene, double frame, ty_error_list* error
     ty_loader_report_to(loader, errors);
     go_to(loader, frame);
     ty_set_texture_times(loader);
-    ty_set_mesh_times(loader);
     if (errors->count == first && scene->world && ty_world_is_stale(loader))
     {
         ty_rebuild_world(loader);
@@ -248,6 +248,7 @@ ty_status ty_scene_set_frame(ty_scene* scene, double frame, ty_error_list* error
     tell_frame(loader);
     ty_frame_write_recipe(loader);
     ++scene->rebuilds.frames;
+    ty_forget_repeated(errors, first);
     ty_loader_report_to(loader, NULL);
     return errors->count == first ? TY_OK : ty_loader_status(errors, first);
 }

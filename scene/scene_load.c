@@ -117,6 +117,7 @@ static ty_status finish(ty_loader* loader, const char* path, double start, int f
     ty_scene* scene = loader->scene;
     if (loader->root)
         load_stages(loader, first);
+    ty_forget_repeated(loader->errors, first);
     scene->path = ty_arena_string(loader->arena, path);
     scene->load_seconds = ty_time_now() - start;
     bool good = loader->root && loader->errors->count == first;

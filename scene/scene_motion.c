@@ -174,6 +174,8 @@ static void keep_pose(ty_loader* loader, int step)
 void ty_pose_scene(ty_loader* loader)
 {
     ty_scene* scene = loader->scene;
+    if (has_view_keys(loader))
+        pose_view(loader, (ty_moment){scene->frame, 0.0}); // the shutter may be keyed: not as the last frame left it
     ty_camera_def still = scene->camera;
     int count = still.shutter > 0.0f && loader->timeline.entry_count > 0 ? still.motion_steps : 1;
     allocate_steps(loader, count);

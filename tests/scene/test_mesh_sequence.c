@@ -107,6 +107,21 @@ static void frames_do_not_remember(void** state)
     assert_string_equal(hash, fixture_scene->hash);
 }
 
+// A camera that focuses on the mesh sees the one of this frame.
+static void focus_follows_the_mesh(void** state)
+{
+    (void)state;
+    write_frames();
+    load("tsuya: 1\ntimeline: { end: 3 }\nassets: { a: { mesh: m.####.ply } }\nmaterials: { m: { model: surface } }\n"
+         "camera: { position: [0, 0, 9], focus_object: it, f_stop: 2 }\n"
+         "objects: [ { name: it, mesh: a, material: m } ]\n");
+    fixture_near(fixture_scene->camera.focus_point.z, 0.0f, 1e-6f);
+    at_frame(3, 4.0f);
+    fixture_near(fixture_scene->camera.focus_point.z, 4.0f, 1e-6f);
+    at_frame(2, 1.0f);
+    fixture_near(fixture_scene->camera.focus_point.z, 1.0f, 1e-6f);
+}
+
 static void attributes_change_too(void** state)
 {
     (void)state;
@@ -149,8 +164,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         FIXTURE_TEST(files_follow_the_time),  FIXTURE_TEST(only_what_changes_is_rebuilt),
-        FIXTURE_TEST(frames_do_not_remember), FIXTURE_TEST(attributes_change_too),
-        FIXTURE_TEST(wrong_files_are_named),
+        FIXTURE_TEST(frames_do_not_remember), FIXTURE_TEST(focus_follows_the_mesh),
+        FIXTURE_TEST(attributes_change_too),  FIXTURE_TEST(wrong_files_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

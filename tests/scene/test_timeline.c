@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keyed values: what a scene is at a frame, which mistakes are told, and how little is made again.
+#include "geometry/gltf_text.h"
 #include "scene/fixture.h"
 
 #define HEAD                                                                                                           \
@@ -422,6 +423,53 @@ static void poses_span_the_shutter(void** state)
     }
 }
 
+static void a_keyed_shutter_is_that_of_the_frame(void** state)
+{
+    (void)state;
+    load(HEAD "camera: { position: { keys: { 1: [0, 0, 2], 11: [10, 0, 2] } }, look_at: [0, 0, -9], motion_steps: 2, "
+              "shutter: { keys: { 1: 0, 3: 1 } } }\n" BODY,
+         true);
+    assert_int_equal(fixture_scene->camera_step_count, 1);
+    set_frame(2);
+    assert_int_equal(fixture_scene->camera_step_count, 2);
+    fixture_near(fixture_scene->camera_steps[0].position.x, 0.75f, 1e-6f);
+    fixture_near(fixture_scene->camera_steps[1].position.x, 1.25f, 1e-6f);
+    set_frame(1);
+    assert_int_equal(fixture_scene->camera_step_count, 1);
+}
+
+// What an object brings from its file stands in every picture where it does in the others, whichever came first.
+static void lights_of_files_stand_still(void** state)
+{
+    (void)state;
+    static const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    static const uint16_t triangle[3] = {0, 1, 2};
+    char path[TY_PATH_MAX];
+    gltf_text g = {0};
+    (void)gltf_floats(&g, corners, 3, 3);
+    (void)gltf_shorts(&g, triangle, 3);
+    gltf_write(&g, fixture_path("lamp.gltf", path),
+               "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\",\"intensity\":9}]}},"
+               "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],"
+               "\"nodes\":[{\"mesh\":0},{\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}]");
+    static const char text[] = HEAD "assets: { a: { gltf: lamp.gltf } }\n"
+                                    "objects: [ { gltf: a, file_lights: true, translate: { keys: { 1: [3, 0, 0], 11: "
+                                    "[8, 0, 0] } } } ]\n%s";
+    char hash[33] = "";
+    for (int i = 0; i < 2; ++i)
+    {
+        char* scene_text = ty_string_format(text, i ? "frame: 6\n" : "");
+        load(scene_text, true);
+        ty_free(scene_text);
+        set_frame(6);
+        assert_int_equal(fixture_scene->light_count, 1);
+        fixture_near(fixture_scene->lights[0].center.x, 3.0f, 1e-6f);
+        if (i)
+            assert_string_equal(hash, fixture_scene->hash);
+        snprintf(hash, sizeof hash, "%s", fixture_scene->hash);
+    }
+}
+
 static void time_outside_is_an_error_if_asked(void** state)
 {
     (void)state;
@@ -430,6 +478,7 @@ static void time_outside_is_an_error_if_asked(void** state)
     fixture_near(vfov_at(9), 30.0f, 1e-5f);
     assert_int_equal(ty_scene_set_frame(fixture_scene, 10, &fixture_errors), TY_BAD_INPUT);
     assert_true(fixture_has("scene.yaml", 3, 17, "frame 10 is after the last key, frame 9"));
+    assert_int_equal(fixture_errors.count, 1);
     fixture_near(vfov_at(9), 30.0f, 1e-5f);
     // a slope that leaves the range is told at the frame where it does
     load_vfov("{ keys: { 1: 10, 9: 30 }, after: continue }");
@@ -458,6 +507,8 @@ int main(void)
         FIXTURE_TEST(film_and_focal_length_give_the_angle),
         FIXTURE_TEST(focus_follows_its_object),
         FIXTURE_TEST(poses_span_the_shutter),
+        FIXTURE_TEST(a_keyed_shutter_is_that_of_the_frame),
+        FIXTURE_TEST(lights_of_files_stand_still),
         FIXTURE_TEST(time_outside_is_an_error_if_asked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
