@@ -44,10 +44,11 @@ int ty_light_group_index(ty_loader* loader, const ty_node* name)
 
 // --- linking ---
 
+// Or may at another frame: links are the same at all.
 static bool material_emits(const ty_loader* loader, int material)
 {
     const ty_material* m = material >= 0 ? loader->scene->materials[material] : NULL;
-    return m && ty_material_is_emissive(m);
+    return m && (ty_material_is_emissive(m) || ty_timeline_find(&loader->timeline, TY_SECTION_MATERIAL, material) >= 0);
 }
 
 // Of what a glTF scene brings, any may.

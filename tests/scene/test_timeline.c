@@ -470,6 +470,24 @@ static void lights_of_files_stand_still(void** state)
     }
 }
 
+// A lamp that is switched on later is linked to what it lights from the beginning.
+static void dark_lamps_are_linked(void** state)
+{
+    (void)state;
+    load(HEAD "assets: { ball: { shape: sphere, divisions: 8, radius: 0.1 } }\n"
+              "materials: { m: { model: surface }, lamp: { model: surface, emission_color: 1, emission_luminance: { "
+              "keys: { 1: 0, 5: 4 } } } }\n"
+              "objects:\n"
+              "  - { mesh: ball, material: m, lights: [glow] }\n"
+              "  - { name: bulb, mesh: ball, material: lamp, light_group: glow, translate: [1, 0, 0] }\n"
+              "  - { mesh: ball, material: m, exclude_lights: bulb, translate: [2, 0, 0] }\n",
+         true);
+    set_frame(5);
+    const ty_scene* scene = fixture_scene;
+    assert_true(scene->light_links[scene->objects[0].light_link][scene->light_count + 1]);
+    assert_false(scene->light_links[scene->objects[2].light_link][scene->light_count + 1]);
+}
+
 static void time_outside_is_an_error_if_asked(void** state)
 {
     (void)state;
@@ -509,6 +527,7 @@ int main(void)
         FIXTURE_TEST(poses_span_the_shutter),
         FIXTURE_TEST(a_keyed_shutter_is_that_of_the_frame),
         FIXTURE_TEST(lights_of_files_stand_still),
+        FIXTURE_TEST(dark_lamps_are_linked),
         FIXTURE_TEST(time_outside_is_an_error_if_asked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
