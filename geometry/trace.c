@@ -81,7 +81,8 @@ static ty_status create_device(ty_world* world, const char* isa, ty_error* error
         strcat(config, known[i]);
     }
     world->isa = isa ? ty_string_copy(isa) : ty_string_copy(best_isa());
-    world->use_avx512 = strcmp(world->isa, "avx512") == 0;
+    // Ours are quicker in halves of eight than by registers of sixteen, and the bits are the same.
+    world->use_avx512 = isa && strcmp(isa, "avx512") == 0;
     world->device = rtcNewDevice(config);
     if (!world->device)
     {

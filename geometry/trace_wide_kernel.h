@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Traversal of the wide top level. Included by one file an instruction set; KERNEL names the set.
 #include "trace_wide.h"
+#include <string.h>
 
 #define JOIN(a, b) a##_##b
 #define NAME(a, b) JOIN(a, b)
@@ -29,8 +30,9 @@ static inline box_ray box_ray_make(ty_vec3 origin, ty_vec3 direction)
         float inverse = reciprocal(d[i]);
         r.origin[i] = ty_f16_set(o[i]);
         r.inverse[i] = ty_f16_set(inverse);
-        r.near[i] = inverse < 0.0f ? i + 3 : i;
-        r.far[i] = inverse < 0.0f ? i : i + 3;
+        int backward = signbit(inverse) != 0; // no branch: which way a ray goes is a coin's throw
+        r.near[i] = i + 3 * backward;
+        r.far[i] = i + 3 - 3 * backward;
     }
     return r;
 }
@@ -78,26 +80,31 @@ static inline uint32_t meet_spheres(const ty_wide_leaf* leaf, const ty_wide_quer
         o[i] = ty_f16_add(ty_f16_dot3(x, px, y, py, z, pz), ty_f16_load(leaf->map[4 * i + 3]));
         d[i] = ty_f16_dot3(x, wx, y, wy, z, wz);
     }
-    const ty_f16 one = ty_f16_set(1.0f);
-    ty_f16 inverse = ty_f16_div(one, ty_f16_dot3(d[0], d[0], d[1], d[1], d[2], d[2]));
-    ty_f16 middle = ty_f16_mul(ty_f16_sub(ty_f16_set(0.0f), ty_f16_dot3(o[0], d[0], o[1], d[1], o[2], d[2])), inverse);
-    ty_f16 p[3];
+    // By the line's moment o x d, so that no division stands before the first answer and only one beside the root.
+    ty_f16 moment[3];
     for (int i = 0; i < 3; i++)
-        p[i] = ty_f16_add(o[i], ty_f16_mul(d[i], middle));
-    ty_f16 distance_sqr = ty_f16_dot3(p[0], p[0], p[1], p[1], p[2], p[2]);
+    {
+        int k = i == 2 ? 0 : i + 1, l = k == 2 ? 0 : k + 1;
+        moment[i] = ty_f16_sub(ty_f16_mul(o[k], d[l]), ty_f16_mul(o[l], d[k]));
+    }
+    const ty_f16 one = ty_f16_set(1.0f);
+    ty_f16 length_sqr = ty_f16_dot3(d[0], d[0], d[1], d[1], d[2], d[2]);
+    ty_f16 moment_sqr = ty_f16_dot3(moment[0], moment[0], moment[1], moment[1], moment[2], moment[2]);
     ty_f16 far = ty_f16_add(ty_f16_add(ty_f16_abs(o[0]), ty_f16_abs(o[1])), ty_f16_abs(o[2]));
     ty_f16 limit = ty_f16_add(one, ty_f16_mul(ty_f16_set(2e-6f), ty_f16_add(one, far)));
-    ty_f16 rest = ty_f16_sub(limit, distance_sqr);
-    uint32_t mask = ty_f16_le(ty_f16_set(0.0f), rest);
+    ty_f16 rest = ty_f16_sub(ty_f16_mul(limit, length_sqr), moment_sqr);
+    uint32_t mask = ty_f16_lt(ty_f16_set(0.0f), rest);
     if (!mask)
         return 0;
-    ty_f16 half = ty_f16_add(ty_f16_sqrt(ty_f16_mul(rest, inverse)), ty_f16_mul(ty_f16_set(2e-6f), ty_f16_abs(middle)));
+    ty_f16 inverse = ty_f16_div(one, length_sqr);
+    ty_f16 middle = ty_f16_mul(ty_f16_sub(ty_f16_set(0.0f), ty_f16_dot3(o[0], d[0], o[1], d[1], o[2], d[2])), inverse);
+    ty_f16 half = ty_f16_add(ty_f16_mul(ty_f16_sqrt(rest), inverse), ty_f16_mul(ty_f16_set(2e-6f), ty_f16_abs(middle)));
     ty_f16 entry = ty_f16_sub(middle, half);
     mask &= ty_f16_le(ty_f16_set(q->t_min), ty_f16_add(middle, half)) & ty_f16_le(entry, ty_f16_set(q->t_max));
     if (!mask)
         return 0;
     ty_f16_store(hits->entry, entry);
-    ty_f16_store(hits->nearest_sqr, distance_sqr);
+    ty_f16_store(hits->nearest_sqr, ty_f16_mul(moment_sqr, inverse));
     ty_f16_store(hits->middle, middle);
     ty_f16_store(hits->per_length_sqr, inverse);
     for (int i = 0; i < 3; i++)
@@ -217,24 +224,44 @@ static bool occluded_leaf(const ty_world* world, const ty_trace_wide* wide, cons
 
 // --- the way down ---
 
-typedef struct waiting
-{
-    uint32_t child;
-    float entry;
-} waiting;
+// A child that waits: where the ray enters it above its number, in one register. Entries are not negative, so that they
+// have the order of their bits.
+typedef uint64_t waiting;
 
-// Pushes the children met, the nearest on top.
-static inline int push_children(const ty_wide_node* node, uint32_t mask, const float* entry, waiting* stack, int count)
+static inline waiting make_waiting(uint32_t child, float entry)
 {
-    int base = count;
-    for (; mask; mask &= mask - 1)
+    uint32_t bits;
+    memcpy(&bits, &entry, sizeof bits);
+    return (waiting)bits << 32 | child;
+}
+
+static inline float waiting_entry(waiting w)
+{
+    uint32_t bits = (uint32_t)(w >> 32);
+    float entry;
+    memcpy(&entry, &bits, sizeof entry);
+    return entry;
+}
+
+// Pushes the children met but for the nearest, which is given back; sorted, the nearer on top. The mask is not empty.
+static inline waiting push_children(const ty_wide_node* node, uint32_t mask, const float* entry, waiting* stack,
+                                    int* count)
+{
+    int lane = __builtin_ctz(mask), base = *count, top = base;
+    waiting nearest = make_waiting(node->child[lane], entry[lane]);
+    for (mask &= mask - 1; mask; mask &= mask - 1)
     {
-        int lane = __builtin_ctz(mask), i = count++;
-        for (; i > base && stack[i - 1].entry < entry[lane]; i--)
+        lane = __builtin_ctz(mask);
+        waiting next = make_waiting(node->child[lane], entry[lane]);
+        waiting farther = next < nearest ? nearest : next;
+        nearest = next < nearest ? next : nearest;
+        int i = top++;
+        for (; i > base && stack[i - 1] < farther; i--)
             stack[i] = stack[i - 1];
-        stack[i] = (waiting){node->child[lane], entry[lane]};
+        stack[i] = farther;
     }
-    return count;
+    *count = top;
+    return nearest;
 }
 
 static inline ty_trace_context make_context(const ty_world* world, const ty_ray* ray)
@@ -247,49 +274,59 @@ static inline ty_trace_context make_context(const ty_world* world, const ty_ray*
 bool NAME(ty_wide_intersect, KERNEL)(const ty_world* world, const ty_trace_wide* wide, ty_wide_query* q)
 {
     ty_trace_context context = make_context(world, q->ray);
-    box_ray ray = box_ray_make(q->origin, q->direction);
+    const box_ray ray = box_ray_make(q->origin, q->direction);
     _Alignas(64) float entry[TY_LANES];
     waiting stack[TY_WIDE_STACK];
-    int count = 1;
+    waiting next = make_waiting(wide->root, q->t_min);
+    int count = 0;
     bool found = false;
-    stack[0] = (waiting){wide->root, q->t_min};
-    while (count > 0)
+    for (;;)
     {
-        waiting next = stack[--count];
-        if (next.entry > q->t_max)
-            continue;
-        if (next.child & TY_WIDE_LEAF)
+        uint32_t child = (uint32_t)next;
+        if (child & TY_WIDE_LEAF)
+            found |= intersect_leaf(world, wide, &wide->leaves[child & ~TY_WIDE_LEAF], &context, q);
+        else
         {
-            found |= intersect_leaf(world, wide, &wide->leaves[next.child & ~TY_WIDE_LEAF], &context, q);
-            continue;
+            const ty_wide_node* node = &wide->nodes[child];
+            uint32_t mask = meet_boxes(node, &ray, q->t_min, q->t_max, entry);
+            if (mask)
+            {
+                next = push_children(node, mask, entry, stack, &count);
+                continue;
+            }
         }
-        const ty_wide_node* node = &wide->nodes[next.child];
-        uint32_t mask = meet_boxes(node, &ray, q->t_min, q->t_max, entry);
-        count = push_children(node, mask, entry, stack, count);
+        do
+        {
+            if (count == 0)
+                return found;
+            next = stack[--count];
+        } while (waiting_entry(next) > q->t_max);
     }
-    return found;
 }
 
 bool NAME(ty_wide_occluded, KERNEL)(const ty_world* world, const ty_trace_wide* wide, const ty_wide_query* q)
 {
     ty_trace_context context = make_context(world, q->ray);
-    box_ray ray = box_ray_make(q->origin, q->direction);
+    const box_ray ray = box_ray_make(q->origin, q->direction);
     _Alignas(64) float entry[TY_LANES];
     waiting stack[TY_WIDE_STACK];
-    int count = 1;
-    stack[0] = (waiting){wide->root, q->t_min};
-    while (count > 0)
+    waiting next = make_waiting(wide->root, q->t_min);
+    int count = 0;
+    for (;;)
     {
-        uint32_t child = stack[--count].child;
+        uint32_t child = (uint32_t)next, mask = 0;
         if (child & TY_WIDE_LEAF)
         {
             if (occluded_leaf(world, wide, &wide->leaves[child & ~TY_WIDE_LEAF], &context, q))
                 return true;
-            continue;
         }
-        const ty_wide_node* node = &wide->nodes[child];
-        uint32_t mask = meet_boxes(node, &ray, q->t_min, q->t_max, entry);
-        count = push_children(node, mask, entry, stack, count);
+        else
+            mask = meet_boxes(&wide->nodes[child], &ray, q->t_min, q->t_max, entry);
+        if (mask)
+            next = push_children(&wide->nodes[child], mask, entry, stack, &count);
+        else if (count > 0)
+            next = stack[--count];
+        else
+            return false;
     }
-    return false;
 }
