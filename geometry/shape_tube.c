@@ -241,7 +241,7 @@ static void add_vertex(sweep* s, double turn, double u, double rise)
                                              ? scale(rise, s->now.tangent)
                                              : add(scale(sqrt(1.0 - rise * rise), out), rise, s->now.tangent);
     double v = (s->along + s->radius * rise) / s->length, k = 1.0 / s->radius;
-    double lean = s->radius * dot(s->now.bend, out);
+    double lean = fmin(s->radius * dot(s->now.bend, out), TIGHTEST); // the check looks at samples alone
     dvec round = cross(s->now.tangent, out);
     ty_shape_vertex vertex = {.position = narrow(add(s->now.at, s->radius, normal)),
                               .normal = narrow(normal),
