@@ -260,7 +260,7 @@ void ty_rebuild_world(ty_loader* loader);        // the same objects, where they
 
 // scene_frame.c
 void ty_forget_repeated(ty_error_list* errors, int from); // the same text at the same place
-void ty_frame_begin(ty_loader* loader);      // the sections of time; the tree at the scene's frame
+void ty_frame_begin(ty_loader* loader);                   // the sections of time; the tree at the scene's frame
 void ty_frame_check_keys(ty_loader* loader); // reads every keyed entry at every key: ranges hold everywhere then
 void ty_pose_scene(ty_loader* loader);       // scene_motion.c: camera and objects over the open shutter
 void ty_frame_write_recipe(ty_loader* loader);
