@@ -5,6 +5,8 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagecache.h>
 #include <atomic>
+#include <cerrno>
+#include <cstring>
 #include <malloc.h>
 #include <memory>
 #include <mutex>
@@ -266,6 +268,28 @@ bool write_levels(OIIO::ImageOutput& output, const char* path, OIIO::ImageSpec s
     return output.close();
 }
 
+// OpenEXR 3.1 waits for ever for its threads when a write of a tile throws: a full disk is told after the last tile.
+class PatientFile : public OIIO::Filesystem::IOFile
+{
+  public:
+    explicit PatientFile(const char* path) : IOFile(path, IOProxy::Write)
+    {
+    }
+    size_t write(const void* bytes, size_t size) override
+    {
+        if (failure_ == 0 && IOFile::write(bytes, size) != size)
+            failure_ = errno ? errno : EIO;
+        return size;
+    }
+    int failure() const
+    {
+        return failure_;
+    }
+
+  private:
+    int failure_ = 0;
+};
+
 } // namespace
 
 ty_oiio_result ty_oiio_tiled_write(const char* path, const char* key, int width, int height, int channels,
@@ -276,7 +300,7 @@ ty_oiio_result ty_oiio_tiled_write(const char* path, const char* key, int width,
         [&]
         {
             ty_oiio_set_up();
-            OIIO::Filesystem::IOFile file(path, OIIO::Filesystem::IOProxy::Write);
+            PatientFile file(path);
             std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("openexr");
             if (!output || !file.handle())
                 return ty_oiio_fail(text, text_size, output ? "cannot open the file" : OIIO::geterror());
@@ -290,6 +314,8 @@ ty_oiio_result ty_oiio_tiled_write(const char* path, const char* key, int width,
             spec.attribute("DateTime", "");
             spec.attribute(KEY, key);
             const bool good = write_levels(*output, path, spec, levels, level_count);
+            if (file.failure())
+                return ty_oiio_fail(text, text_size, std::strerror(file.failure()));
             // The library does not look at what the last flush says.
             if (!good || std::fflush(file.handle()) != 0 || std::ferror(file.handle()))
                 return ty_oiio_fail(text, text_size, good ? "cannot write to the end" : output->geterror());

@@ -136,6 +136,15 @@ cp good.exr kept.exr
 expect 4 bash -c 'ulimit -f 1; exec "$0" render scene.yaml -o kept.exr --size 256x144 --spp 1' "$tsuya"
 same good.exr kept.exr
 
+# A disk that is full while a texture is converted ends the program, and leaves nothing in the cache.
+{ printf 'P6 300 200 255\n'; head -c 180000 "$tsuya"; } >noise.ppm
+edited 's/base_color: 0.5/base_color: { texture: noise.ppm, mapping: triplanar }/'
+mkdir full
+expect 4 timeout -k 1 60 bash -c 'ulimit -f 64; exec "$0" render scene.yaml -o noisy.exr --cache full --spp 1' "$tsuya"
+says "converted texture"
+[ -z "$(ls -A full)" ] || fail "left in the cache: $(ls -A full)"
+expect 0 "$tsuya" render scene.yaml -o noisy.exr --cache full --spp 1
+
 # Nothing to see is no mistake, but is said.
 edited 's/^lights:/lights: []/; s/^  - \{ type.*//'
 expect 0 "$tsuya" check scene.yaml
