@@ -3,6 +3,7 @@
 // Segments are found through blocks of a grid, so that it can be asked anywhere.
 #include "roots.h"
 #include <string.h>
+#include <tsuya/base/noise.h>
 
 enum
 {
@@ -52,28 +53,6 @@ static float segment_distance(const roots_segment* s, ty_vec3 p, float* at)
 
 // --- relief ---
 
-static float lattice(int x, int y, int z, uint32_t seed)
-{
-    uint32_t h =
-        ty_mix32((uint32_t)x + 0x9e3779b9u * ty_mix32((uint32_t)y + 0x85ebca6bu * ty_mix32((uint32_t)z + seed)));
-    return 2.0f * ty_u32_to_float(h) - 1.0f;
-}
-
-static float noise(ty_vec3 p, uint32_t seed)
-{
-    int i = (int)floorf(p.x), j = (int)floorf(p.y), k = (int)floorf(p.z);
-    ty_vec3 f = {p.x - (float)i, p.y - (float)j, p.z - (float)k};
-    ty_vec3 w = {f.x * f.x * (3.0f - 2.0f * f.x), f.y * f.y * (3.0f - 2.0f * f.y), f.z * f.z * (3.0f - 2.0f * f.z)};
-    float sum[2];
-    for (int e = 0; e < 2; e++)
-    {
-        float low = ty_lerp(lattice(i, j, k + e, seed), lattice(i + 1, j, k + e, seed), w.x);
-        float high = ty_lerp(lattice(i, j + 1, k + e, seed), lattice(i + 1, j + 1, k + e, seed), w.x);
-        sum[e] = ty_lerp(low, high, w.y);
-    }
-    return ty_lerp(sum[0], sum[1], w.z);
-}
-
 // Flutes along the root and small swellings across it, as lengths: about -1.4..1.4 times the depth of the bark.
 static float relief(const roots_skin* skin, const roots_segment* s, float at, ty_vec3 p)
 {
@@ -86,8 +65,8 @@ static float relief(const roots_skin* skin, const roots_segment* s, float at, ty
     ty_vec3 swell = ty_add(ty_mul(across, 0.9f), ty_vec3_make(0.0f, 0.7f * along, 0.3f * along));
     ty_vec3 grain = ty_add(ty_mul(across, 4.5f), ty_vec3_make(0.6f * along, 1.3f * along, 0.0f));
     float fine = ty_clamp(axis.r / (4.5f * skin->step) - 1.0f, 0.0f, 1.0f); // what cells cannot show is left out
-    float sum = noise(flute, seed) + 0.35f * noise(swell, seed + 1u);
-    sum += fine > 0.0f ? 0.3f * fine * noise(grain, seed + 2u) : 0.0f;
+    float sum = ty_value_noise(flute, seed) + 0.35f * ty_value_noise(swell, seed + 1u);
+    sum += fine > 0.0f ? 0.3f * fine * ty_value_noise(grain, seed + 2u) : 0.0f;
     return recipe->bark * axis.r * sum;
 }
 
