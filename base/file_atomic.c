@@ -192,16 +192,17 @@ void ty_atomic_abort(ty_atomic_file* file)
     file->slot = -1;
 }
 
-static bool descriptor_write(int fd, const char* bytes, size_t size)
+bool ty_descriptor_write(int fd, const void* bytes, size_t size)
 {
+    const char* next = bytes;
     while (size > 0)
     {
-        ssize_t written = write(fd, bytes, size);
+        ssize_t written = write(fd, next, size);
         if (written < 0 && errno == EINTR)
             continue;
         if (written < 0)
             return false;
-        bytes += written;
+        next += written;
         size -= (size_t)written;
     }
     return true;
@@ -214,7 +215,7 @@ ty_status ty_file_write(const char* path, const void* bytes, size_t size, ty_err
     if (status)
         return status;
     int fd = open(file.temporary, O_WRONLY | O_CLOEXEC);
-    if (fd < 0 || !descriptor_write(fd, bytes, size))
+    if (fd < 0 || !ty_descriptor_write(fd, bytes, size))
         status = fail_errno(error, path, "cannot write");
     if (fd >= 0 && close(fd) != 0 && !status)
         status = fail_errno(error, path, "cannot write");

@@ -40,18 +40,9 @@ typedef struct child_run
 
 ty_status ty_child_write(int output_fd, const void* bytes, size_t size, ty_error* error)
 {
-    const char* next = bytes;
-    while (size > 0)
-    {
-        ssize_t written = write(output_fd, next, size);
-        if (written < 0 && errno == EINTR)
-            continue;
-        if (written < 0)
-            return ty_error_set(error, TY_BAD_FILE, "cannot write to the parent process: %s", strerror(errno));
-        next += written;
-        size -= (size_t)written;
-    }
-    return TY_OK;
+    if (ty_descriptor_write(output_fd, bytes, size))
+        return TY_OK;
+    return ty_error_set(error, TY_BAD_FILE, "cannot write to the parent process: %s", strerror(errno));
 }
 
 // --- in the child ---

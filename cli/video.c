@@ -126,26 +126,6 @@ static ty_status start(const char* ffmpeg, const char* file, double fps, pid_t* 
     return TY_OK;
 }
 
-// False when nobody reads any more.
-static bool send(int fd, const uint8_t* bytes, size_t size)
-{
-    while (size > 0)
-    {
-        ssize_t written = write(fd, bytes, size);
-        if (written < 0 && errno == EINTR)
-        {
-            continue;
-        }
-        if (written < 0)
-        {
-            return false;
-        }
-        bytes += written;
-        size -= (size_t)written;
-    }
-    return true;
-}
-
 static ty_status send_pictures(int fd, const char* pattern, const ty_frame_list* list, ty_error* error)
 {
     for (int i = 0; i < list->count; i++)
@@ -163,7 +143,7 @@ static ty_status send_pictures(int fd, const char* pattern, const ty_frame_list*
         {
             return status;
         }
-        bool sent = send(fd, bytes.data, bytes.size);
+        bool sent = ty_descriptor_write(fd, bytes.data, bytes.size);
         ty_bytes_term(&bytes);
         if (!sent)
         {

@@ -47,6 +47,8 @@ TY_CHECKED ty_status ty_atomic_folder_commit(ty_atomic_folder* folder, ty_error*
 void ty_atomic_folder_abort(ty_atomic_folder* folder); // removes the temporary; harmless after a commit
 
 TY_CHECKED ty_status ty_file_write(const char* path, const void* bytes, size_t size, ty_error* error); // atomic
+// All bytes to a descriptor, through interruptions and short writes. False: errno tells.
+bool ty_descriptor_write(int fd, const void* bytes, size_t size);
 TY_CHECKED ty_status ty_folder_create(const char* path, ty_error* error); // with parents; existing is fine
 
 // Removes a folder and the files in it; folders in it are left, and it with them. Links are not followed.
@@ -90,5 +92,5 @@ typedef struct ty_child_def
 typedef ty_status ty_child_fn(const void* context, int output_fd, ty_error* error);
 TY_CHECKED ty_status ty_child_run(const ty_child_def* def, ty_child_fn* fn, const void* context, ty_bytes* output,
                                   ty_error* error);
-// For fn: writes all bytes to the pipe, handling short writes.
+// For fn: writes all bytes to the pipe.
 TY_CHECKED ty_status ty_child_write(int output_fd, const void* bytes, size_t size, ty_error* error);
