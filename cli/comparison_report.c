@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Comparisons as one HTML page that needs nothing beside it: pictures are data URIs, the script is inside.
 #include "comparison.h"
-#include <errno.h>
+#include "markup.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -33,30 +33,6 @@ static const char script[] =
     "  b.forEach(function(e){e.onclick=function(){choose(e.value)}});\n"
     "  set.querySelector('.view').onmousemove=function(e){if(mode=='wipe'){var r=i[0].getBoundingClientRect();\n"
     "    wipe(Math.min(1,Math.max(0,(e.clientX-r.left)/r.width)))}};choose('wipe')});\n";
-
-static void put_text(FILE* file, const char* text)
-{
-    for (; *text; text++)
-    {
-        switch (*text)
-        {
-        case '<':
-            fputs("&lt;", file);
-            break;
-        case '>':
-            fputs("&gt;", file);
-            break;
-        case '&':
-            fputs("&amp;", file);
-            break;
-        case '"':
-            fputs("&quot;", file);
-            break;
-        default:
-            fputc(*text, file);
-        }
-    }
-}
 
 // RFC 4648.
 static void put_base64(FILE* file, const ty_bytes* bytes)
@@ -142,7 +118,7 @@ static void put_table(FILE* file, const ty_report_entry* entry)
     {
         const ty_compared_layer* layer = &entry->comparison->layers[i];
         fputs("<tr><td>", file);
-        put_text(file, layer->layer.name);
+        ty_markup_text(file, layer->layer.name);
         fputs("</td>", file);
         for (int m = 0; m < TY_METRIC_COUNT; m++)
         {
@@ -158,17 +134,17 @@ static void put_table(FILE* file, const ty_report_entry* entry)
 static ty_status put_entry(FILE* file, const ty_report_entry* entry, ty_error* error)
 {
     fputs("<h2>", file);
-    put_text(file, entry->title);
+    ty_markup_text(file, entry->title);
     fprintf(file, " <span class=\"%s\">%s</span></h2>\n<p class=\"hint\">reference ", entry->failed ? "bad" : "good",
             entry->failed ? "differs" : "passed");
-    put_text(file, entry->reference);
+    ty_markup_text(file, entry->reference);
     fputs(", test ", file);
-    put_text(file, entry->test);
+    ty_markup_text(file, entry->test);
     fputs("</p>\n", file);
     if (entry->fault)
     {
         fputs("<p class=\"bad\">", file);
-        put_text(file, entry->fault);
+        ty_markup_text(file, entry->fault);
         fputs("</p>\n", file);
         return TY_OK;
     }
@@ -182,23 +158,31 @@ static ty_status put_entry(FILE* file, const ty_report_entry* entry, ty_error* e
     return status;
 }
 
-static ty_status put_page(FILE* file, const char* title, const ty_report_entry* entries, int count, ty_error* error)
+typedef struct page
 {
+    const char* title;
+    const ty_report_entry* entries;
+    int count;
+} page;
+
+static ty_status put_page(FILE* file, const void* context, ty_error* error)
+{
+    const page* all = context;
     int failed = 0;
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < all->count; i++)
     {
-        failed += entries[i].failed;
+        failed += all->entries[i].failed;
     }
     fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>", file);
-    put_text(file, title);
+    ty_markup_text(file, all->title);
     fprintf(file, "</title>\n<style>\n%s</style></head><body>\n<h1>", style);
-    put_text(file, title);
+    ty_markup_text(file, all->title);
     fprintf(file, "</h1>\n<p>%d compared, <span class=\"%s\">%d differ</span>. Move over a picture to wipe.</p>\n",
-            count, failed ? "bad" : "good", failed);
+            all->count, failed ? "bad" : "good", failed);
     ty_status status = TY_OK;
-    for (int i = 0; i < count && status == TY_OK; i++)
+    for (int i = 0; i < all->count && status == TY_OK; i++)
     {
-        status = put_entry(file, &entries[i], error);
+        status = put_entry(file, &all->entries[i], error);
     }
     fprintf(file, "<script>\n%s</script></body></html>\n", script);
     return status;
@@ -207,30 +191,6 @@ static ty_status put_page(FILE* file, const char* title, const ty_report_entry* 
 ty_status ty_comparison_report(const char* path, const char* title, const ty_report_entry* entries, int count,
                                ty_error* error)
 {
-    static ty_atomic_file output; // paths: too large for the stack
-    ty_status status = ty_atomic_begin(&output, path, error);
-    if (status != TY_OK)
-    {
-        return status;
-    }
-    FILE* file = fopen(output.temporary, "wb");
-    if (file)
-    {
-        status = put_page(file, title, entries, count, error);
-    }
-    bool bad = !file || ferror(file);
-    if (file)
-    {
-        bad |= fclose(file) != 0;
-    }
-    if (status == TY_OK && bad)
-    {
-        status = ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "cannot write: %s", strerror(errno));
-    }
-    if (status == TY_OK)
-    {
-        return ty_atomic_commit(&output, error);
-    }
-    ty_atomic_abort(&output);
-    return status;
+    const page all = {title, entries, count};
+    return ty_markup_write(path, put_page, &all, error);
 }

@@ -1,45 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Results as JUnit XML, which CI servers read.
+#include "markup.h"
 #include "regress.h"
-#include <errno.h>
 #include <stdio.h>
-#include <string.h>
-#include <tsuya/base/file.h>
-
-// Text of an attribute; what XML 1.0 cannot hold becomes a question mark.
-static void put_text(FILE* file, const char* text)
-{
-    for (; *text; text++)
-    {
-        unsigned char c = (unsigned char)*text;
-        switch (c)
-        {
-        case '<':
-            fputs("&lt;", file);
-            break;
-        case '>':
-            fputs("&gt;", file);
-            break;
-        case '&':
-            fputs("&amp;", file);
-            break;
-        case '"':
-            fputs("&quot;", file);
-            break;
-        case '\n':
-        case '\t':
-            fprintf(file, "&#%d;", c);
-            break;
-        default:
-            fputc(c < 32 ? '?' : c, file);
-        }
-    }
-}
 
 static void put_case(FILE* file, const ty_regress_result* result)
 {
     fputs("    <testcase classname=\"tsuya.regress\" name=\"", file);
-    put_text(file, result->of->name);
+    ty_markup_text(file, result->of->name);
     fprintf(file, "\" time=\"%.3f\"", result->seconds);
     if (!ty_regress_failed(result))
     {
@@ -48,12 +16,21 @@ static void put_case(FILE* file, const ty_regress_result* result)
     }
     const char* element = result->verdict == TY_REGRESS_FAULT ? "error" : "failure";
     fprintf(file, ">\n      <%s message=\"", element);
-    put_text(file, result->text);
+    ty_markup_text(file, result->text);
     fputs("\"/>\n    </testcase>\n", file);
 }
 
-static void put_suite(FILE* file, const ty_regress_result* results, int count)
+typedef struct suite
 {
+    const ty_regress_result* results;
+    int count;
+} suite;
+
+static ty_status put_suite(FILE* file, const void* context, ty_error* error)
+{
+    (void)error;
+    const ty_regress_result* results = ((const suite*)context)->results;
+    int count = ((const suite*)context)->count;
     int tests = 0, failures = 0, faults = 0;
     double seconds = 0.0;
     for (int i = 0; i < count; i++)
@@ -75,31 +52,11 @@ static void put_suite(FILE* file, const ty_regress_result* results, int count)
         }
     }
     fputs("  </testsuite>\n</testsuites>\n", file);
+    return TY_OK;
 }
 
 ty_status ty_regress_junit(const char* path, const ty_regress_result* results, int count, ty_error* error)
 {
-    static ty_atomic_file output; // paths: too large for the stack
-    ty_status status = ty_atomic_begin(&output, path, error);
-    if (status != TY_OK)
-    {
-        return status;
-    }
-    FILE* file = fopen(output.temporary, "wb");
-    if (file)
-    {
-        put_suite(file, results, count);
-    }
-    bool bad = !file || ferror(file);
-    if (file)
-    {
-        bad |= fclose(file) != 0;
-    }
-    if (!bad)
-    {
-        return ty_atomic_commit(&output, error);
-    }
-    status = ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "cannot write: %s", strerror(errno));
-    ty_atomic_abort(&output);
-    return status;
+    const suite all = {results, count};
+    return ty_markup_write(path, put_suite, &all, error);
 }
