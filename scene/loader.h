@@ -231,6 +231,10 @@ int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data, i
 void ty_load_surface_textures(ty_loader* loader); // after the assets: recipes make frames
 void ty_set_texture_times(ty_loader* loader);     // to the scene's seconds
 // mesh_sequence.c: meshes that change with time
+// When a sequence shows what, as textures and meshes understand it; and a report where the definition contradicts
+// itself.
+ty_mip_texture_def ty_sequence_timing(const ty_sequence_def* sequence);
+void ty_sequence_check(ty_loader* loader, const ty_sequence_def* sequence, ty_place place);
 void ty_mesh_sequence_read(ty_loader* loader, ty_asset* asset, const ty_mesh_asset_def* def, ty_node* pattern);
 void ty_mesh_sequence_load(ty_loader* loader, ty_asset* asset); // the mesh at the scene's seconds
 void ty_mesh_sequence_destroy(struct ty_mesh_sequence* sequence);

@@ -19,23 +19,8 @@ typedef struct ty_mesh_sequence
 
 // --- reading the asset ---
 
-static ty_mip_texture_def timing_of(const ty_mesh_asset_def* def)
-{
-    ty_mip_texture_def timing = ty_mip_texture_def_default();
-    timing.fps = def->fps;
-    timing.start = def->start;
-    timing.first = def->first_frame;
-    timing.last = def->last_frame;
-    timing.end = def->loop     ? TY_SEQUENCE_LOOP
-                 : def->mirror ? TY_SEQUENCE_MIRROR
-                 : def->hold   ? TY_SEQUENCE_HOLD
-                               : TY_SEQUENCE_STOP;
-    timing.blend = def->interpolate == 1;
-    return timing;
-}
-
 // Every file from the first to the last must be there; which are not is one message.
-static bool find_files(ty_loader* loader, ty_mesh_sequence* s, const ty_mesh_asset_def* def, ty_place place)
+static bool find_files(ty_loader* loader, ty_mesh_sequence* s, const ty_sequence_def* def, ty_place place)
 {
     ty_frame_numbers numbers;
     ty_error error;
@@ -79,15 +64,15 @@ static void check_times(ty_loader* loader, const ty_mesh_sequence* s, ty_place p
 void ty_mesh_sequence_read(ty_loader* loader, ty_asset* asset, const ty_mesh_asset_def* def, ty_node* pattern)
 {
     struct ty_scene_resources* resources = loader->scene->resources;
-    if (def->loop + def->mirror + def->hold > 1)
-        ty_report(loader->errors, asset->place, TY_BAD_INPUT, "only one of 'loop', 'mirror' and 'hold'");
+    ty_sequence_check(loader, &def->sequence, asset->place);
     const char* path = ty_files_use_frames(&loader->files, pattern, "mesh");
     if (!path)
         return;
     ty_mesh_sequence* s = TY_ARENA_ALLOC(loader->arena, ty_mesh_sequence, 1);
-    *s = (ty_mesh_sequence){.pattern = path, .timing = timing_of(def), .loaded = {-1, -1}, .shown = {-1, -1}};
+    *s = (ty_mesh_sequence){
+        .pattern = path, .timing = ty_sequence_timing(&def->sequence), .loaded = {-1, -1}, .shown = {-1, -1}};
     asset->path = path;
-    if (!find_files(loader, s, def, asset->place))
+    if (!find_files(loader, s, &def->sequence, asset->place))
         return;
     check_times(loader, s, asset->place);
     asset->sequence = resources->sequences[resources->sequence_count++] = s;

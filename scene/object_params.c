@@ -14,7 +14,7 @@ static void visible_default(void* def)
 
 static void mesh_default(void* def)
 {
-    *(ty_mesh_asset_def*)def = (ty_mesh_asset_def){.fps = 24.0f, .last_frame = -1, .interpolate = 1};
+    *(ty_mesh_asset_def*)def = (ty_mesh_asset_def){.sequence = {.fps = 24.0f, .last_frame = -1, .interpolate = 1}};
 }
 
 static void gltf_default(void* def)
@@ -31,7 +31,7 @@ static void frames_default(void* def)
 {
     ty_mip_texture_def texture = ty_mip_texture_def_default();
     *(ty_frames_asset_def*)def =
-        (ty_frames_asset_def){.wrap = (int)texture.wrap, .fps = texture.fps, .last_frame = texture.last};
+        (ty_frames_asset_def){.wrap = (int)texture.wrap, .sequence = {.fps = texture.fps, .last_frame = texture.last}};
 }
 
 static void aggregate_default(void* def)
@@ -104,31 +104,32 @@ static const ty_param texture_rows[] = {
 
 static const char* const interpolations[] = {"none", "linear", NULL};
 
-#define FRAMES_ROW(field, kind, unit, low, high, names, text)                                                          \
+#define SEQUENCE_ROW(type, field, kind, unit, low, high, names, text)                                                  \
     {                                                                                                                  \
-#field, kind, unit, low, high, names, NULL, offsetof(ty_frames_asset_def, field), text, false                  \
+#field, kind, unit, low, high, names, NULL, offsetof(type, sequence.field), text, false                        \
     }
+#define SEQUENCE_ROWS(type)                                                                                            \
+    SEQUENCE_ROW(type, fps, TY_PARAM_FLOAT, "1/s", 0.001, 100000, NULL, "frames a second of the scene's time"),        \
+        SEQUENCE_ROW(type, start, TY_PARAM_FLOAT, "s", -1e6, 1e6, NULL,                                                \
+                     "when the first frame is shown; 0 = the timeline's start"),                                       \
+        SEQUENCE_ROW(type, first_frame, TY_PARAM_INT, "", -999999999, 999999999, NULL,                                 \
+                     "number of the first, with last_frame"),                                                          \
+        SEQUENCE_ROW(type, last_frame, TY_PARAM_INT, "", -999999999, 999999999, NULL,                                  \
+                     "number of the last; below first_frame: all there are"),                                          \
+        SEQUENCE_ROW(type, loop, TY_PARAM_BOOL, "", 0, 0, NULL, "the first frame follows the last"),                   \
+        SEQUENCE_ROW(type, mirror, TY_PARAM_BOOL, "", 0, 0, NULL, "back and forth"),                                   \
+        SEQUENCE_ROW(type, hold, TY_PARAM_BOOL, "", 0, 0, NULL,                                                        \
+                     "the first before, the last after; none of the three: an error"),                                 \
+        SEQUENCE_ROW(type, interpolate, TY_PARAM_ENUM, "", 0, 0, interpolations, "between one frame and the next")
+
 static const ty_param frames_rows[] = {
     {"frames", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_frames_asset_def, frames),
      "image files, #### for the number (fill.####.exr); or a recipe (file or in place)", true},
-    FRAMES_ROW(color_space, TY_PARAM_STRING, "", 0, 0, NULL,
-               "of the images; if not given: guessed for colours, raw for numbers"),
-    FRAMES_ROW(wrap, TY_PARAM_ENUM, "", 0, 0, wraps, "outside 0..1"),
-    FRAMES_ROW(fps, TY_PARAM_FLOAT, "1/s", 0.001, 100000, NULL, "frames a second of the scene's time"),
-    FRAMES_ROW(start, TY_PARAM_FLOAT, "s", -1e6, 1e6, NULL, "when the first frame is shown; 0 = the timeline's start"),
-    FRAMES_ROW(first_frame, TY_PARAM_INT, "", -999999999, 999999999, NULL, "number of the first, with last_frame"),
-    FRAMES_ROW(last_frame, TY_PARAM_INT, "", -999999999, 999999999, NULL,
-               "number of the last; below first_frame: all there are"),
-    FRAMES_ROW(loop, TY_PARAM_BOOL, "", 0, 0, NULL, "the first frame follows the last"),
-    FRAMES_ROW(mirror, TY_PARAM_BOOL, "", 0, 0, NULL, "back and forth"),
-    FRAMES_ROW(hold, TY_PARAM_BOOL, "", 0, 0, NULL, "the first before, the last after; none of the three: an error"),
-    FRAMES_ROW(interpolate, TY_PARAM_ENUM, "", 0, 0, interpolations, "between one frame and the next"),
+    {"color_space", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_frames_asset_def, color_space),
+     "of the images; if not given: guessed for colours, raw for numbers", false},
+    {"wrap", TY_PARAM_ENUM, "", 0, 0, wraps, NULL, offsetof(ty_frames_asset_def, wrap), "outside 0..1", false},
+    SEQUENCE_ROWS(ty_frames_asset_def),
 };
-
-#define MESH_ROW(field, kind, unit, low, high, names, text)                                                            \
-    {                                                                                                                  \
-#field, kind, unit, low, high, names, NULL, offsetof(ty_mesh_asset_def, field), text, false                    \
-    }
 
 static const ty_param mesh_rows[] = {
     {"mesh", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_mesh_asset_def, mesh),
@@ -136,15 +137,7 @@ static const ty_param mesh_rows[] = {
      "#### "
      "for the number (roots.####.ply) are animated, by what follows",
      true},
-    MESH_ROW(fps, TY_PARAM_FLOAT, "1/s", 0.001, 100000, NULL, "files a second of the scene's time"),
-    MESH_ROW(start, TY_PARAM_FLOAT, "s", -1e6, 1e6, NULL, "when the first is shown; 0 = the timeline's start"),
-    MESH_ROW(first_frame, TY_PARAM_INT, "", -999999999, 999999999, NULL, "number of the first, with last_frame"),
-    MESH_ROW(last_frame, TY_PARAM_INT, "", -999999999, 999999999, NULL,
-             "number of the last; below first_frame: all there are"),
-    MESH_ROW(loop, TY_PARAM_BOOL, "", 0, 0, NULL, "the first follows the last"),
-    MESH_ROW(mirror, TY_PARAM_BOOL, "", 0, 0, NULL, "back and forth"),
-    MESH_ROW(hold, TY_PARAM_BOOL, "", 0, 0, NULL, "the first before, the last after; none of the three: an error"),
-    MESH_ROW(interpolate, TY_PARAM_ENUM, "", 0, 0, interpolations, "between one and the next"),
+    SEQUENCE_ROWS(ty_mesh_asset_def),
 };
 
 static const ty_param aggregate_rows[] = {

@@ -72,8 +72,7 @@ static void read_frames(ty_loader* loader, ty_node* node, ty_asset* asset)
     ty_frames_asset_def* def = &asset->frames_def;
     ty_node* value = ty_node_get(node, "frames");
     bool good = ty_params_read(&loader->reader, node, ty_frames_asset_params(), def, skip);
-    if (def->loop + def->mirror + def->hold > 1)
-        ty_report(loader->errors, node->place, TY_BAD_INPUT, "only one of 'loop', 'mirror' and 'hold'");
+    ty_sequence_check(loader, &def->sequence, node->place);
     if (value->kind == TY_NODE_MAP)
     {
         if (ty_recipe_read(loader, value, "frames", &asset->recipe) && good)

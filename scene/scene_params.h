@@ -21,13 +21,20 @@ typedef struct ty_object_def
 } ty_object_def;
 
 // Entries of `assets:` by their first key.
-typedef struct ty_mesh_asset_def
+// When the files of a sequence are shown.
+typedef struct ty_sequence_def
 {
-    const char* mesh;            // path, or the pattern of a sequence
-    float fps, start;            // start in s
+    float fps;
+    float start;                 // s
     int first_frame, last_frame; // last below first: all there are
     bool loop, mirror, hold;     // at most one
     int interpolate;             // 0 none, 1 linear
+} ty_sequence_def;
+
+typedef struct ty_mesh_asset_def
+{
+    const char* mesh; // path, or the pattern of a sequence
+    ty_sequence_def sequence;
 } ty_mesh_asset_def;
 
 typedef struct ty_texture_asset_def
@@ -42,11 +49,7 @@ typedef struct ty_frames_asset_def
     const char* frames; // pattern, or a recipe in place
     const char* color_space;
     int wrap; // ty_wrap
-    float fps;
-    float start;                 // s
-    int first_frame, last_frame; // last below first: all there are
-    bool loop, mirror, hold;     // at most one
-    int interpolate;             // 0 none, 1 linear
+    ty_sequence_def sequence;
 } ty_frames_asset_def;
 
 typedef struct ty_aggregate_asset_def

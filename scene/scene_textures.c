@@ -35,20 +35,25 @@ static const char* space_for(const char* named, bool is_data)
     return named || !is_data ? named : "raw";
 }
 
-static ty_mip_texture_def frames_def(const ty_frames_asset_def* frames)
+ty_mip_texture_def ty_sequence_timing(const ty_sequence_def* sequence)
 {
     ty_mip_texture_def def = ty_mip_texture_def_default();
-    def.wrap = (ty_wrap)frames->wrap;
-    def.fps = frames->fps;
-    def.start = frames->start;
-    def.first = frames->first_frame;
-    def.last = frames->last_frame;
-    def.end = frames->loop     ? TY_SEQUENCE_LOOP
-              : frames->mirror ? TY_SEQUENCE_MIRROR
-              : frames->hold   ? TY_SEQUENCE_HOLD
-                               : TY_SEQUENCE_STOP;
-    def.blend = frames->interpolate == 1;
+    def.fps = sequence->fps;
+    def.start = sequence->start;
+    def.first = sequence->first_frame;
+    def.last = sequence->last_frame;
+    def.end = sequence->loop     ? TY_SEQUENCE_LOOP
+              : sequence->mirror ? TY_SEQUENCE_MIRROR
+              : sequence->hold   ? TY_SEQUENCE_HOLD
+                                 : TY_SEQUENCE_STOP;
+    def.blend = sequence->interpolate == 1;
     return def;
+}
+
+void ty_sequence_check(ty_loader* loader, const ty_sequence_def* sequence, ty_place place)
+{
+    if (sequence->loop + sequence->mirror + sequence->hold > 1)
+        ty_report(loader->errors, place, TY_BAD_INPUT, "only one of 'loop', 'mirror' and 'hold'");
 }
 
 int ty_surface_texture_of_asset(ty_loader* loader, int asset_index, const ty_node* name, bool is_data)
@@ -66,7 +71,8 @@ int ty_surface_texture_of_asset(ty_loader* loader, int asset_index, const ty_nod
     }
     else if (asset->kind == TY_ASSET_FRAMES || made)
     {
-        texture.def = frames_def(&asset->frames_def);
+        texture.def = ty_sequence_timing(&asset->frames_def.sequence);
+        texture.def.wrap = (ty_wrap)asset->frames_def.wrap;
         texture.def.path = made ? NULL : asset->path;
         texture.def.color_space = space_for(asset->frames_def.color_space, is_data);
         texture.asset = asset_index;
