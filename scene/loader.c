@@ -139,7 +139,7 @@ static bool is_deep(const ty_node* node, int depth)
     return false;
 }
 
-bool ty_loader_resolve(ty_loader* loader)
+bool ty_loader_resolve_tree(ty_loader* loader)
 {
     ty_document_take_version(&loader->tree, loader->root);
     ty_override_sets(loader, true);
@@ -153,6 +153,13 @@ bool ty_loader_resolve(ty_loader* loader)
         take_search(loader);
     ty_override_quick(loader);
     ty_override_sets(loader, false);
+    return !loader->tree.stopped;
+}
+
+bool ty_loader_resolve(ty_loader* loader)
+{
+    if (!ty_loader_resolve_tree(loader))
+        return false;
     if (!loader->is_recipe)
         inline_recipes(loader);
     ty_override_check_defines(loader);

@@ -166,6 +166,7 @@ void ty_loader_report_to(ty_loader* loader, ty_error_list* errors);
 // The tree in loader->root made final: version, overrides, variables, recipe files in place. False when reading the
 // tables makes no sense any more.
 bool ty_loader_resolve(ty_loader* loader);
+bool ty_loader_resolve_tree(ty_loader* loader); // overrides and variables alone: what `timeline` says
 ty_status ty_loader_status(const ty_error_list* errors, int first); // of the errors from first on
 // Room for one more item; the old array stays in the arena.
 void* ty_loader_grow(ty_arena* arena, void* items, int count, int* capacity, size_t size);
@@ -264,6 +265,7 @@ void ty_rebuild_world(ty_loader* loader);        // the same objects, where they
 
 // scene_frame.c
 void ty_forget_repeated(ty_error_list* errors, int from); // the same text at the same place
+void ty_frame_read_timeline(ty_loader* loader);           // the section alone
 void ty_frame_begin(ty_loader* loader);                   // the sections of time; the tree at the scene's frame
 void ty_frame_check_keys(ty_loader* loader); // reads every keyed entry at every key: ranges hold everywhere then
 void ty_pose_scene(ty_loader* loader);       // scene_motion.c: camera and objects over the open shutter

@@ -7,7 +7,7 @@
 
 #define MOST_FRAME 1e7
 
-static void read_timeline(ty_loader* loader)
+void ty_frame_read_timeline(ty_loader* loader)
 {
     ty_timeline_def* def = &loader->scene->timeline;
     ty_node* node = ty_section(loader, "timeline", TY_NODE_MAP);
@@ -72,7 +72,7 @@ static void set_time(ty_loader* loader, double frame)
 
 void ty_frame_begin(ty_loader* loader)
 {
-    read_timeline(loader);
+    ty_frame_read_timeline(loader);
     loader->frame_node = ty_node_get(loader->root, "frame");
     read_frame(loader);
     ty_timeline_collect(&loader->timeline, &loader->tree, &loader->reader, loader->root);

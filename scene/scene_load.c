@@ -133,16 +133,34 @@ static ty_status finish(ty_loader* loader, const char* path, double start, int f
     return status;
 }
 
-ty_status ty_scene_load(const char* path, const ty_scene_options* options, ty_scene** out, ty_error_list* errors)
+// The file of a path: a folder stands for the scene.yaml in it.
+static const char* scene_file(const char* path, char file[TY_PATH_MAX])
 {
-    char file[TY_PATH_MAX], folder[TY_PATH_MAX];
-    double start = ty_time_now();
-    *out = NULL;
     if (ty_folder_exists(path))
         ty_path_join(path, "scene.yaml", file);
     else
         ty_path_join(".", path, file);
-    const char* shown = strncmp(file, "./", 2) == 0 ? file + 2 : file;
+    return strncmp(file, "./", 2) == 0 ? file + 2 : file;
+}
+
+// A loader with the tree of text, or of the file where text is NULL.
+static ty_loader* read_tree(const char* name, const void* text, size_t size, const ty_scene_options* options,
+                            ty_error_list* errors)
+{
+    char folder[TY_PATH_MAX];
+    ty_path_folder(name, folder);
+    ty_loader* loader = ty_loader_create(folder, options, errors);
+    loader->root = text ? ty_document_parse(&loader->tree, &loader->files, name, text, size)
+                        : ty_document_load(&loader->tree, &loader->files, name, "", NULL);
+    return loader;
+}
+
+ty_status ty_scene_load(const char* path, const ty_scene_options* options, ty_scene** out, ty_error_list* errors)
+{
+    char file[TY_PATH_MAX];
+    double start = ty_time_now();
+    *out = NULL;
+    const char* shown = scene_file(path, file);
     if (ty_gltf_is_file(shown))
     {
         ty_text text = {0};
@@ -152,24 +170,37 @@ ty_status ty_scene_load(const char* path, const ty_scene_options* options, ty_sc
         ty_text_term(&text);
         return status;
     }
-    ty_path_folder(file, folder);
     int first = errors->count;
-    ty_loader* loader = ty_loader_create(folder, options, errors);
-    loader->root = ty_document_load(&loader->tree, &loader->files, shown, "", NULL);
-    return finish(loader, shown, start, first, out);
+    return finish(read_tree(shown, NULL, 0, options, errors), shown, start, first, out);
 }
 
 ty_status ty_scene_load_memory(const char* name, const void* bytes, size_t size, const ty_scene_options* options,
                                ty_scene** out, ty_error_list* errors)
 {
-    char folder[TY_PATH_MAX];
     double start = ty_time_now();
     *out = NULL;
-    ty_path_folder(name, folder);
     int first = errors->count;
-    ty_loader* loader = ty_loader_create(folder, options, errors);
-    loader->root = ty_document_parse(&loader->tree, &loader->files, name, bytes, size);
-    return finish(loader, name, start, first, out);
+    return finish(read_tree(name, bytes, size, options, errors), name, start, first, out);
+}
+
+ty_timeline_def ty_scene_read_timeline(const char* path, const ty_scene_options* options)
+{
+    char file[TY_PATH_MAX];
+    static const char none[] = "tsuya: 1\n"; // a glTF file tells of no time, but overrides may
+    const char* shown = scene_file(path, file);
+    ty_timeline_def timeline = ty_timeline_def_default();
+    ty_error_list errors = {0};
+    ty_loader* loader = read_tree(shown, ty_gltf_is_file(shown) ? none : NULL, sizeof none - 1, options, &errors);
+    if (loader->root && ty_loader_resolve_tree(loader))
+    {
+        ty_frame_read_timeline(loader);
+        timeline = loader->scene->timeline;
+    }
+    ty_scene* scene = loader->scene;
+    ty_loader_destroy(loader);
+    ty_scene_destroy(scene);
+    ty_error_list_term(&errors);
+    return timeline;
 }
 
 void ty_scene_destroy(ty_scene* scene)

@@ -95,6 +95,20 @@ for what in camera objects; do
     cmp -s t.3.exr t.1.exr && fail "nothing turned"
     absent t.5.exr
 done
+# Its frames are the timeline's, whatever number that begins with, and the same pictures.
+for start in 1001 -2; do
+    expect 0 "$tsuya" turntable scene.yaml --frames 4 --turn objects -o n.#.exr "${turned[@]}" --set 'materials.grey.base_color=0.5' \
+        --set timeline.start=$start --set timeline.end=1100
+    pixels n.$start.exr t.1.exr
+    pixels n.$((start + 3)).exr t.4.exr
+    absent n.$((start - 1)).exr
+    absent n.$((start + 4)).exr
+done
+expect 2 "$tsuya" turntable scene.yaml --frames 4 -o n.#.exr --set timeline.start=9999998 --set timeline.end=9999999
+says "beyond 10000000"
+expect 3 "$tsuya" turntable scene.yaml --frames 4 -o n.#.exr --set timeline.start=9 --set film.size=no
+says "'end' is 4"
+says "'size'"
 expect 2 "$tsuya" turntable scene.yaml --about 1,2
 says "x,y,z"
 expect 2 "$tsuya" turntable scene.yaml --turn lights

@@ -297,6 +297,10 @@ TY_CHECKED ty_status ty_scene_load_memory(const char* name, const void* bytes, s
                                           const ty_scene_options* options, ty_scene** out, ty_error_list* errors);
 void ty_scene_destroy(ty_scene* scene); // NULL is allowed
 
+// What a scene's section `timeline` says, overrides included, without loading the scene: for commands that key values
+// by its frames. Mistakes are left to the loading, which tells all of them; what they hide is as by default.
+ty_timeline_def ty_scene_read_timeline(const char* path, const ty_scene_options* options);
+
 // The scene as it is at another frame: keyed values are read again and what depends on them is rebuilt; assets never
 // are. Recipe and hash become those of the frame. Not while somebody renders it. On failure the scene can be given
 // another frame or destroyed, nothing else.
