@@ -2,6 +2,7 @@
 // The cache of converted textures: keys, files, and files without a name where nothing can be kept.
 #include "mip_cache.h"
 #include "mip_build.h"
+#include "mip_seal.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -13,12 +14,11 @@
 #include <tsuya/base/memory.h>
 #include <unistd.h>
 
-#define FORMAT "tsuya texture 1" // in the key: what another version made is something else
+#define FORMAT "tsuya texture 2" // in the key: what another version made is something else
 
 enum
 {
     TEXT = 512,
-    CHUNK = 1 << 18,
 };
 
 static ty_status shim_status(ty_oiio_result result, const char* path, const char* doing, const char* text,
@@ -81,22 +81,6 @@ ty_status ty_mip_cache_check(ty_mip_cache* cache, ty_error* error)
                         cache->reason);
 }
 
-static ty_status hash_file(const char* path, ty_hasher* hasher, ty_error* error)
-{
-    FILE* file = fopen(path, "rb");
-    if (!file)
-        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "cannot read: %s", strerror(errno));
-    uint8_t* buffer = TY_ALLOC(uint8_t, CHUNK);
-    size_t size = 0;
-    errno = 0;
-    while ((size = fread(buffer, 1, CHUNK, file)) > 0)
-        ty_hasher_add(hasher, buffer, size);
-    int failed = ferror(file) ? (errno ? errno : EIO) : 0;
-    ty_free(buffer);
-    fclose(file);
-    return failed ? ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "cannot read: %s", strerror(failed)) : TY_OK;
-}
-
 static ty_status make_key(const ty_mip_cache* cache, const char* path, const char* space, char key[33], ty_error* error)
 {
     ty_hasher* hasher = ty_hasher_create();
@@ -104,7 +88,7 @@ static ty_status make_key(const ty_mip_cache* cache, const char* path, const cha
     ty_hasher_add_string(hasher, space ? space : "");
     if (!space || strcmp(space, "raw") != 0)
         ty_hasher_add_string(hasher, ty_color_identity(cache->color));
-    ty_status status = hash_file(path, hasher, error);
+    ty_status status = ty_file_hash(path, UINT64_MAX, hasher, error);
     ty_hash_hex(ty_hasher_end(hasher), key);
     return status;
 }
@@ -141,6 +125,7 @@ static ty_status convert_kept(ty_mip_cache* cache, const char* path, const char*
     if (status)
         return status;
     status = convert(cache, path, space, key, file.temporary, error);
+    status = status ? status : ty_mip_seal(file.temporary, error);
     if (!status)
         return ty_atomic_commit(&file, error);
     ty_atomic_abort(&file);
@@ -189,7 +174,9 @@ static bool open_kept(ty_mip_cache* cache, const char* kept, ty_mip_image* image
     char text[TEXT];
     if (!ty_file_exists(kept))
         return false;
-    if (ty_oiio_tiles_open(cache->tiles, kept, image->key, &image->file, text, sizeof text) == TY_OIIO_OK)
+    if (!ty_mip_is_sealed(kept))
+        snprintf(text, sizeof text, "it is cut off or changed");
+    else if (ty_oiio_tiles_open(cache->tiles, kept, image->key, &image->file, text, sizeof text) == TY_OIIO_OK)
     {
         cache->stats.files_found++;
         return true;

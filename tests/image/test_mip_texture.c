@@ -473,7 +473,49 @@ static void test_damaged_and_missing_folders(void** state)
     }
 }
 
-// Cut off behind its header: found only when a tile is looked up, which is then black and counted.
+static void run_in(const char* folder, const char* command)
+{
+    char text[TY_PATH_MAX + 128];
+    snprintf(text, sizeof text, "cd %s && for f in *.exr; do %s; done", folder, command);
+    assert_int_equal(system(text), 0);
+}
+
+// What lies behind the header is found damaged before a lookup meets it, and the file is as good as new afterwards.
+static void test_damaged_tiles_are_made_again(void** state)
+{
+    (void)state;
+    static const char* const damages[] = {
+        "true",
+        "truncate -s 5000 $f",
+        "true",
+        "truncate -s -1 $f",
+        "printf x | dd of=$f bs=1 seek=$(($(stat -c %s $f) / 2)) conv=notrunc status=none",
+        "printf x >>$f",
+        "truncate -s 0 $f",
+        "head -c 64 /dev/zero >>$f",
+        "true",
+    };
+    char folder[TY_PATH_MAX];
+    snprintf(folder, sizeof folder, "%s", in_folder("kept"));
+    ty_mip_texture_def def = sequence_def(write_image("once.exr", 512, 512, 1, bumpy));
+    for (size_t i = 0; i < sizeof damages / sizeof *damages; i++)
+    {
+        mkdir(folder, 0777);
+        if (i > 0)
+            run_in(folder, damages[i]);
+        bool damaged = i == 0 || strcmp(damages[i], "true") != 0;
+        ty_mip_cache* made = make_cache(folder, TY_MIP_CACHE_BYTES);
+        ty_mip_texture* texture = open_def(made, &def, 0.0);
+        assert_int_equal(stats_of(made).files_converted, damaged);
+        assert_int_equal(stats_of(made).files_found, !damaged);
+        assert_near(sample(texture, 460.5f / 512.0f, 1.0f - 460.5f / 512.0f), bumpy(460, 460, 0), 0.0f);
+        assert_int_equal(ty_mip_cache_check(made, NULL), TY_OK);
+        ty_mip_texture_destroy(texture);
+        ty_mip_cache_destroy(made);
+    }
+}
+
+// Cut off behind its header while it is open: found only when a tile is looked up, which is then black and counted.
 static void test_unreadable_tiles_are_told(void** state)
 {
     (void)state;
@@ -566,6 +608,7 @@ int main(void)
         TEST(test_bad_sequences),
         TEST(test_files_are_converted_once),
         TEST(test_damaged_and_missing_folders),
+        TEST(test_damaged_tiles_are_made_again),
         TEST(test_unreadable_tiles_are_told),
         TEST(test_same_bits_for_any_threads_and_memory),
     };
