@@ -22,13 +22,28 @@ function(tsuya_compile_options target)
     target_compile_options(${target} PRIVATE ${tsuya_warnings} $<$<COMPILE_LANGUAGE:C>:${tsuya_c_warnings}>
                                              -ffp-contract=off -fno-math-errno -fvisibility=hidden)
     if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-        # No FMA: kernels must give the same bits on every machine.
+        # No FMA but where it is asked for by name: the same bits on every machine.
         target_compile_options(${target} PRIVATE -march=${TSUYA_ARCH} -mno-fma)
     endif()
     if(TSUYA_SANITIZE)
         target_compile_options(${target} PRIVATE -fsanitize=${TSUYA_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)
         target_link_options(${target} PRIVATE -fsanitize=${TSUYA_SANITIZE})
+    endif()
+endfunction()
+
+# Sources that call fused operations by name (base/simd.h, fmaf): as instructions, where the build's machines have them.
+# Nothing else fuses: -ffp-contract stays off.
+include(CheckCSourceCompiles)
+set(CMAKE_REQUIRED_FLAGS "-march=${TSUYA_ARCH}")
+check_c_source_compiles("#ifndef __FMA__
+#error
+#endif
+int main(void) { return 0; }" TSUYA_HAS_FMA)
+unset(CMAKE_REQUIRED_FLAGS)
+function(tsuya_use_fma)
+    if(TSUYA_HAS_FMA)
+        set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "-mfma")
     endif()
 endfunction()
 
@@ -48,7 +63,10 @@ function(tsuya_floor name)
         set(wide ${sources})
         list(FILTER wide INCLUDE REGEX "_avx512\\.c$")
         set_source_files_properties(${wide} PROPERTIES COMPILE_OPTIONS
-            "-mavx512f;-mavx512dq;-mavx512bw;-mavx512vl;-mavx512cd;-mno-fma")
+            "-mavx512f;-mavx512dq;-mavx512bw;-mavx512vl;-mavx512cd;-mfma")
+        set(base ${sources})
+        list(FILTER base INCLUDE REGEX "_base\\.c$")
+        tsuya_use_fma(${base})
     endif()
     target_link_libraries(tsuya_${name} PRIVATE ${floor_LIBRARIES})
     foreach(dependency ${floor_DEPENDS})

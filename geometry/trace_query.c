@@ -194,8 +194,9 @@ bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_
         const ty_affine* back = &world->prototypes[prototype].from_sphere;
         if (!ty_trace_sphere_map(world, o, instance, &map))
             return false;
-        origin = ty_map_point(back, ty_map_point(&map, origin));
-        direction = ty_map_vector(back, ty_map_vector(&map, direction));
+        ty_wide_to_sphere(&map, &origin, &direction);
+        origin = ty_map_point(back, origin);
+        direction = ty_map_vector(back, direction);
     }
     else if (o->step_count == 1)
     {

@@ -42,6 +42,19 @@ typedef struct ty_wide_query
     uint32_t triangle, instance;
 } ty_wide_query;
 
+// The box of an instance as nodes hold it: grown by sixteen units in the last place of its largest coordinate. Half of
+// that is for maps that round differently for rays and for points, the rest for the box test.
+static inline ty_bounds ty_wide_padded(ty_bounds box)
+{
+    ty_vec3 reach = ty_max3(ty_max3(box.high, ty_neg(box.high)), ty_max3(box.low, ty_neg(box.low)));
+    float pad = 1e-6f * ty_max(reach.x, ty_max(reach.y, reach.z));
+    ty_vec3 pad3 = {pad, pad, pad};
+    return (ty_bounds){ty_sub(box.low, pad3), ty_add(box.high, pad3)};
+}
+
+// A ray in the space of an instance's bounding sphere, to the bit as the kernels see it there.
+void ty_wide_to_sphere(const ty_affine* map, ty_vec3* origin, ty_vec3* direction);
+
 // The kernels: same bits, other width.
 bool ty_wide_intersect_base(const ty_world* world, const ty_trace_wide* wide, ty_wide_query* query);
 bool ty_wide_occluded_base(const ty_world* world, const ty_trace_wide* wide, const ty_wide_query* query);

@@ -54,11 +54,7 @@ static ty_bounds instance_bounds(const ty_trace_prototype* prototype, const ty_a
                     sqrtf(m.x.z * m.x.z + m.y.z * m.y.z + m.z.z * m.z.z)};
     box.low = ty_max3(box.low, ty_sub(m.t, half));
     box.high = ty_min3(box.high, ty_add(m.t, half));
-    // Mapping rays and mapping points round differently: a few units in the last place of the largest coordinate.
-    ty_vec3 reach = ty_max3(ty_max3(box.high, ty_neg(box.high)), ty_max3(box.low, ty_neg(box.low)));
-    float pad = 1e-6f * ty_max(reach.x, ty_max(reach.y, reach.z));
-    ty_vec3 pad3 = {pad, pad, pad};
-    return (ty_bounds){ty_sub(box.low, pad3), ty_add(box.high, pad3)};
+    return ty_wide_padded(box);
 }
 
 static float half_area(ty_bounds b)

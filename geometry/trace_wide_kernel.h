@@ -1,58 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Traversal of the wide top level. Included by one file an instruction set; KERNEL names the set.
-#include "trace_wide.h"
+#include "trace_wide_boxes.h"
 #include <string.h>
 
 #define JOIN(a, b) a##_##b
 #define NAME(a, b) JOIN(a, b)
-
-// --- boxes ---
-
-// The ray for the box test: reciprocal direction, and for each axis which planes it meets first.
-typedef struct box_ray
-{
-    ty_f16 origin[3], inverse[3];
-    int near[3], far[3];
-} box_ray;
-
-static inline float reciprocal(float d)
-{
-    // No axis is quite parallel: the largest finite reciprocal keeps 0 * inf away.
-    return 1.0f / (fabsf(d) > 1e-30f ? d : copysignf(1e-30f, d));
-}
-
-static inline box_ray box_ray_make(ty_vec3 origin, ty_vec3 direction)
-{
-    const float o[3] = {origin.x, origin.y, origin.z}, d[3] = {direction.x, direction.y, direction.z};
-    box_ray r;
-    for (int i = 0; i < 3; i++)
-    {
-        float inverse = reciprocal(d[i]);
-        r.origin[i] = ty_f16_set(o[i]);
-        r.inverse[i] = ty_f16_set(inverse);
-        int backward = signbit(inverse) != 0; // no branch: which way a ray goes is a coin's throw
-        r.near[i] = i + 3 * backward;
-        r.far[i] = i + 3 - 3 * backward;
-    }
-    return r;
-}
-
-// Children that the ray meets between t_min and t_max, and where it enters them.
-static inline uint32_t meet_boxes(const ty_wide_node* node, const box_ray* r, float t_min, float t_max, float* entry)
-{
-    ty_f16 near = ty_f16_set(t_min), far = ty_f16_set(t_max);
-    // T. Ize 2013, "Robust BVH ray traversal": the far side rounds down by at most this.
-    const ty_f16 slack = ty_f16_set(1.0000004f);
-    for (int i = 0; i < 3; i++)
-    {
-        ty_f16 low = ty_f16_sub(ty_f16_load(node->plane[r->near[i]]), r->origin[i]);
-        ty_f16 high = ty_f16_sub(ty_f16_load(node->plane[r->far[i]]), r->origin[i]);
-        near = ty_f16_max(ty_f16_mul(low, r->inverse[i]), near);
-        far = ty_f16_min(ty_f16_mul(ty_f16_mul(high, r->inverse[i]), slack), far);
-    }
-    ty_f16_store(entry, near);
-    return ty_f16_le(near, far);
-}
 
 // --- ellipsoids ---
 
@@ -77,7 +29,7 @@ static inline uint32_t meet_spheres(const ty_wide_leaf* leaf, const ty_wide_quer
     {
         ty_f16 x = ty_f16_load(leaf->map[4 * i]), y = ty_f16_load(leaf->map[4 * i + 1]);
         ty_f16 z = ty_f16_load(leaf->map[4 * i + 2]);
-        o[i] = ty_f16_add(ty_f16_dot3(x, px, y, py, z, pz), ty_f16_load(leaf->map[4 * i + 3]));
+        o[i] = ty_f16_fma(x, px, ty_f16_fma(y, py, ty_f16_fma(z, pz, ty_f16_load(leaf->map[4 * i + 3]))));
         d[i] = ty_f16_dot3(x, wx, y, wy, z, wz);
     }
     // By the line's moment o x d, so that no division stands before the first answer and only one beside the root.
@@ -85,20 +37,21 @@ static inline uint32_t meet_spheres(const ty_wide_leaf* leaf, const ty_wide_quer
     for (int i = 0; i < 3; i++)
     {
         int k = i == 2 ? 0 : i + 1, l = k == 2 ? 0 : k + 1;
-        moment[i] = ty_f16_sub(ty_f16_mul(o[k], d[l]), ty_f16_mul(o[l], d[k]));
+        moment[i] = ty_f16_fms(o[k], d[l], ty_f16_mul(o[l], d[k]));
     }
     const ty_f16 one = ty_f16_set(1.0f);
     ty_f16 length_sqr = ty_f16_dot3(d[0], d[0], d[1], d[1], d[2], d[2]);
     ty_f16 moment_sqr = ty_f16_dot3(moment[0], moment[0], moment[1], moment[1], moment[2], moment[2]);
     ty_f16 far = ty_f16_add(ty_f16_add(ty_f16_abs(o[0]), ty_f16_abs(o[1])), ty_f16_abs(o[2]));
-    ty_f16 limit = ty_f16_add(one, ty_f16_mul(ty_f16_set(2e-6f), ty_f16_add(one, far)));
-    ty_f16 rest = ty_f16_sub(ty_f16_mul(limit, length_sqr), moment_sqr);
+    ty_f16 limit = ty_f16_fma(ty_f16_set(2e-6f), far, ty_f16_set(1.0f + 2e-6f));
+    ty_f16 rest = ty_f16_fms(limit, length_sqr, moment_sqr);
     uint32_t mask = ty_f16_lt(ty_f16_set(0.0f), rest);
     if (!mask)
         return 0;
     ty_f16 inverse = ty_f16_div(one, length_sqr);
-    ty_f16 middle = ty_f16_mul(ty_f16_sub(ty_f16_set(0.0f), ty_f16_dot3(o[0], d[0], o[1], d[1], o[2], d[2])), inverse);
-    ty_f16 half = ty_f16_add(ty_f16_mul(ty_f16_sqrt(rest), inverse), ty_f16_mul(ty_f16_set(2e-6f), ty_f16_abs(middle)));
+    ty_f16 along = ty_f16_dot3(o[0], d[0], o[1], d[1], o[2], d[2]);
+    ty_f16 middle = ty_f16_mul(ty_f16_sub(ty_f16_set(0.0f), along), inverse);
+    ty_f16 half = ty_f16_fma(ty_f16_set(2e-6f), ty_f16_abs(middle), ty_f16_mul(ty_f16_sqrt(rest), inverse));
     ty_f16 entry = ty_f16_sub(middle, half);
     mask &= ty_f16_le(ty_f16_set(q->t_min), ty_f16_add(middle, half)) & ty_f16_le(entry, ty_f16_set(q->t_max));
     if (!mask)
@@ -274,7 +227,7 @@ static inline ty_trace_context make_context(const ty_world* world, const ty_ray*
 bool NAME(ty_wide_intersect, KERNEL)(const ty_world* world, const ty_trace_wide* wide, ty_wide_query* q)
 {
     ty_trace_context context = make_context(world, q->ray);
-    const box_ray ray = box_ray_make(q->origin, q->direction);
+    const ty_box_ray ray = ty_box_ray_make(q->origin, q->direction);
     _Alignas(64) float entry[TY_LANES];
     waiting stack[TY_WIDE_STACK];
     waiting next = make_waiting(wide->root, q->t_min);
@@ -288,7 +241,7 @@ bool NAME(ty_wide_intersect, KERNEL)(const ty_world* world, const ty_trace_wide*
         else
         {
             const ty_wide_node* node = &wide->nodes[child];
-            uint32_t mask = meet_boxes(node, &ray, q->t_min, q->t_max, entry);
+            uint32_t mask = ty_meet_boxes(node, &ray, q->t_min, q->t_max, entry);
             if (mask)
             {
                 next = push_children(node, mask, entry, stack, &count);
@@ -307,7 +260,7 @@ bool NAME(ty_wide_intersect, KERNEL)(const ty_world* world, const ty_trace_wide*
 bool NAME(ty_wide_occluded, KERNEL)(const ty_world* world, const ty_trace_wide* wide, const ty_wide_query* q)
 {
     ty_trace_context context = make_context(world, q->ray);
-    const box_ray ray = box_ray_make(q->origin, q->direction);
+    const ty_box_ray ray = ty_box_ray_make(q->origin, q->direction);
     _Alignas(64) float entry[TY_LANES];
     waiting stack[TY_WIDE_STACK];
     waiting next = make_waiting(wide->root, q->t_min);
@@ -321,7 +274,7 @@ bool NAME(ty_wide_occluded, KERNEL)(const ty_world* world, const ty_trace_wide* 
                 return true;
         }
         else
-            mask = meet_boxes(&wide->nodes[child], &ray, q->t_min, q->t_max, entry);
+            mask = ty_meet_boxes(&wide->nodes[child], &ray, q->t_min, q->t_max, entry);
         if (mask)
             next = push_children(&wide->nodes[child], mask, entry, stack, &count);
         else if (count > 0)

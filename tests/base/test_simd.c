@@ -42,8 +42,8 @@ static void same(ty_f16 value, const lanes* expected)
         lanes expected;                                                                                                \
         for (int i = 0; i < TY_LANES; i++)                                                                             \
         {                                                                                                              \
-            float x = a.v[i], y = b.v[i];                                                                              \
-            (void)y;                                                                                                   \
+            float x = a.v[i], y = b.v[i], z = c.v[i];                                                                  \
+            (void)(y + z);                                                                                             \
             expected.v[i] = (expression);                                                                              \
         }                                                                                                              \
         same(operation, &expected);                                                                                    \
@@ -55,13 +55,14 @@ static void operations_are_plain_arithmetic(void** state)
     ty_rng rng = ty_rng_make((ty_seed){31}, 0, 0);
     for (int round = 0; round < 2000; round++)
     {
-        lanes a, b;
+        lanes a, b, c;
         for (int i = 0; i < TY_LANES; i++)
         {
             a.v[i] = any_float(&rng);
             b.v[i] = any_float(&rng);
+            c.v[i] = any_float(&rng);
         }
-        ty_f16 va = ty_f16_load(a.v), vb = ty_f16_load(b.v);
+        ty_f16 va = ty_f16_load(a.v), vb = ty_f16_load(b.v), vc = ty_f16_load(c.v);
         CHECK(va, x);
         lanes third;
         for (int i = 0; i < TY_LANES; i++)
@@ -75,7 +76,10 @@ static void operations_are_plain_arithmetic(void** state)
         CHECK(ty_f16_abs(va), fabsf(x));
         CHECK(ty_f16_min(va, vb), x < y ? x : y);
         CHECK(ty_f16_max(va, vb), x > y ? x : y);
-        CHECK(ty_f16_dot3(va, vb, va, va, vb, vb), x * y + x * x + y * y);
+        CHECK(ty_f16_fma(va, vb, vc), fmaf(x, y, z));
+        CHECK(ty_f16_fms(va, vb, vc), fmaf(x, y, -z));
+        CHECK(ty_f16_fnma(va, vb, vc), fmaf(-x, y, z));
+        CHECK(ty_f16_dot3(va, vb, vc, va, vb, vc), fmaf(x, y, fmaf(z, x, y * z)));
         uint32_t le = 0, lt = 0;
         for (int i = 0; i < TY_LANES; i++)
         {

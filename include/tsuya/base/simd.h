@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sixteen floats side by side: AVX-512, two halves of AVX2, or plain loops, by what the including file is compiled for.
-// Every operation is the IEEE one, so that all three give the same bits. TY_SIMD_PORTABLE forces the loops.
+// Every operation is the IEEE one, so that all three give the same bits. AVX2 counts with FMA only: files that include
+// this are compiled with it (tsuya_use_fma). TY_SIMD_PORTABLE forces the loops.
 #pragma once
 #include <math.h>
 #include <stdint.h>
@@ -40,6 +41,19 @@ static inline ty_f16 ty_f16_div(ty_f16 a, ty_f16 b)
 {
     return _mm512_div_ps(a, b);
 }
+// a * b + c, a * b - c, c - a * b, rounded once.
+static inline ty_f16 ty_f16_fma(ty_f16 a, ty_f16 b, ty_f16 c)
+{
+    return _mm512_fmadd_ps(a, b, c);
+}
+static inline ty_f16 ty_f16_fms(ty_f16 a, ty_f16 b, ty_f16 c)
+{
+    return _mm512_fmsub_ps(a, b, c);
+}
+static inline ty_f16 ty_f16_fnma(ty_f16 a, ty_f16 b, ty_f16 c)
+{
+    return _mm512_fnmadd_ps(a, b, c);
+}
 static inline ty_f16 ty_f16_sqrt(ty_f16 a)
 {
     return _mm512_sqrt_ps(a);
@@ -68,7 +82,7 @@ static inline uint32_t ty_f16_lt(ty_f16 a, ty_f16 b)
     return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
 }
 
-#elif defined(__AVX2__) && !defined(TY_SIMD_PORTABLE)
+#elif defined(__AVX2__) && defined(__FMA__) && !defined(TY_SIMD_PORTABLE)
 #include <immintrin.h>
 
 typedef struct ty_f16
@@ -104,6 +118,18 @@ static inline ty_f16 ty_f16_mul(ty_f16 a, ty_f16 b)
 static inline ty_f16 ty_f16_div(ty_f16 a, ty_f16 b)
 {
     return (ty_f16){_mm256_div_ps(a.low, b.low), _mm256_div_ps(a.high, b.high)};
+}
+static inline ty_f16 ty_f16_fma(ty_f16 a, ty_f16 b, ty_f16 c)
+{
+    return (ty_f16){_mm256_fmadd_ps(a.low, b.low, c.low), _mm256_fmadd_ps(a.high, b.high, c.high)};
+}
+static inline ty_f16 ty_f16_fms(ty_f16 a, ty_f16 b, ty_f16 c)
+{
+    return (ty_f16){_mm256_fmsub_ps(a.low, b.low, c.low), _mm256_fmsub_ps(a.high, b.high, c.high)};
+}
+static inline ty_f16 ty_f16_fnma(ty_f16 a, ty_f16 b, ty_f16 c)
+{
+    return (ty_f16){_mm256_fnmadd_ps(a.low, b.low, c.low), _mm256_fnmadd_ps(a.high, b.high, c.high)};
 }
 static inline ty_f16 ty_f16_sqrt(ty_f16 a)
 {
@@ -175,6 +201,18 @@ static inline ty_f16 ty_f16_div(ty_f16 a, ty_f16 b)
 {
     TY_F16_EACH(a.lane[i] / b.lane[i]);
 }
+static inline ty_f16 ty_f16_fma(ty_f16 a, ty_f16 b, ty_f16 c)
+{
+    TY_F16_EACH(fmaf(a.lane[i], b.lane[i], c.lane[i]));
+}
+static inline ty_f16 ty_f16_fms(ty_f16 a, ty_f16 b, ty_f16 c)
+{
+    TY_F16_EACH(fmaf(a.lane[i], b.lane[i], -c.lane[i]));
+}
+static inline ty_f16 ty_f16_fnma(ty_f16 a, ty_f16 b, ty_f16 c)
+{
+    TY_F16_EACH(fmaf(-a.lane[i], b.lane[i], c.lane[i]));
+}
 static inline ty_f16 ty_f16_sqrt(ty_f16 a)
 {
     TY_F16_EACH(sqrtf(a.lane[i]));
@@ -207,8 +245,8 @@ static inline uint32_t ty_f16_lt(ty_f16 a, ty_f16 b)
 }
 #endif
 
-// a * x + b * y + c * z, rounded after every step and in this order.
+// a * x + (b * y + c * z), each step fused.
 static inline ty_f16 ty_f16_dot3(ty_f16 a, ty_f16 x, ty_f16 b, ty_f16 y, ty_f16 c, ty_f16 z)
 {
-    return ty_f16_add(ty_f16_add(ty_f16_mul(a, x), ty_f16_mul(b, y)), ty_f16_mul(c, z));
+    return ty_f16_fma(a, x, ty_f16_fma(b, y, ty_f16_mul(c, z)));
 }
