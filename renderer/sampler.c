@@ -2,6 +2,7 @@
 // Sobol' with hash-based Owen scrambling and an index shuffled per group (Burley 2020, "Practical hash-based Owen
 // scrambling"), all on reversed bits: Owen's nested permutation is then a hash whose bits depend on lower bits alone.
 #include "sampler.h"
+#include <string.h>
 
 // Direction numbers of Joe and Kuo 2008 ("new-joe-kuo-6"), dimensions 2 to 4.
 static const struct
@@ -68,6 +69,12 @@ ty_sampler ty_sampler_make(const ty_sobol* sobol, ty_seed seed, int x, int y, ui
     return (ty_sampler){sobol, key, reverse_bits(sample), seed, pixel, sample};
 }
 
+void ty_sampler_set_sample(ty_sampler* sampler, uint32_t sample)
+{
+    sampler->index_reversed = reverse_bits(sample);
+    sampler->sample = sample;
+}
+
 // Laine and Karras 2011 in the constants of Vegdahl 2021 ("Building a better LK hash"): a nested uniform scramble of
 // the reversed bits.
 static inline uint32_t scramble_reversed(uint32_t x, uint32_t seed)
@@ -80,36 +87,59 @@ static inline uint32_t scramble_reversed(uint32_t x, uint32_t seed)
     return x;
 }
 
-// The point of a group, before its scrambling, and the seeds of that.
-static inline void group_point(const ty_sampler* s, uint32_t group, uint32_t* restrict x, uint32_t* restrict seed)
+// Vectors of gcc and clang: the operators of C, lane by lane.
+typedef uint32_t u32x4 __attribute__((vector_size(16)));
+typedef uint32_t u32x8 __attribute__((vector_size(32)));
+typedef int32_t s32x8 __attribute__((vector_size(32)));
+typedef float f32x8 __attribute__((vector_size(32)));
+typedef uint8_t u8x32 __attribute__((vector_size(32)));
+
+// The point of a group, before its scrambling, and the seed of that.
+static inline u32x4 group_point(const ty_sampler* s, uint32_t group, uint32_t* seed)
 {
     uint64_t key = ty_mix64(s->key + 0x9e3779b97f4a7c15ull * (group + 1u));
     uint32_t index = scramble_reversed(s->index_reversed, (uint32_t)key);
-    const uint32_t* low = s->sobol->points[0][index >> 24];
-    const uint32_t* high = s->sobol->points[1][index >> 16 & 255u];
-    for (uint32_t d = 0; d < 4; ++d)
-    {
-        x[d] = low[d] ^ high[d];
-        seed[d] = (uint32_t)(key >> 32) + d * 0x9e3779b9u;
-    }
+    u32x4 low, high;
+    memcpy(&low, s->sobol->points[0][index >> 24], sizeof low);
+    memcpy(&high, s->sobol->points[1][index >> 16 & 255u], sizeof high);
+    *seed = (uint32_t)(key >> 32);
+    return low ^ high;
 }
 
-static inline void fetch(const ty_sampler* sampler, uint32_t group, float* restrict u)
-{
-    uint32_t x[4], seed[4];
-    group_point(sampler, group, x, seed);
-    for (int d = 0; d < 4; ++d)
-        u[d] = (float)(int32_t)(reverse_bits(scramble_reversed(x[d], ty_mix32(seed[d]))) >> 8) * 0x1p-24f;
-}
+#define DIMENSION_STEP 0x9e3779b9u // between the seeds of a group's dimensions
 
 void ty_sampler_4d(const ty_sampler* sampler, uint32_t group, float u[4])
 {
-    fetch(sampler, group, u);
+    uint32_t seed;
+    u32x4 x = group_point(sampler, group, &seed);
+    for (uint32_t d = 0; d < 4; ++d)
+        u[d] = ty_u32_to_float(reverse_bits(scramble_reversed(x[d], ty_mix32(seed + d * DIMENSION_STEP))));
 }
 
-// Two loops of four measured 25 ns, one of eight 38 ns.
+// The same side by side: mix32, the scrambling, reversed bits within bytes, reversed bytes.
 void ty_sampler_8d(const ty_sampler* sampler, uint32_t group, float u[8])
 {
-    fetch(sampler, group, u);
-    fetch(sampler, group + 1u, u + 4);
+    uint32_t a, b;
+    u32x4 low = group_point(sampler, group, &a), high = group_point(sampler, group + 1u, &b);
+    u32x8 x = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+    u32x8 seed = (u32x8){a, a, a, a, b, b, b, b} + (u32x8){0, 1, 2, 3, 0, 1, 2, 3} * DIMENSION_STEP;
+    seed ^= seed >> 16;
+    seed *= 0x7feb352du;
+    seed ^= seed >> 15;
+    seed *= 0x846ca68bu;
+    seed ^= seed >> 16;
+
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= seed >> 16 | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+
+    x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+    x = (u32x8)__builtin_shufflevector((u8x32)x, (u8x32)x, 3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12, 19, 18,
+                                       17, 16, 23, 22, 21, 20, 27, 26, 25, 24, 31, 30, 29, 28);
+    f32x8 unit = __builtin_convertvector((s32x8)(x >> 8), f32x8) * 0x1p-24f;
+    memcpy(u, &unit, sizeof unit);
 }

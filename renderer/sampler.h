@@ -27,6 +27,8 @@ typedef struct ty_sampler
 
 // sample is below TY_SAMPLER_MAX_SAMPLES.
 ty_sampler ty_sampler_make(const ty_sobol* sobol, ty_seed seed, int x, int y, uint32_t sample);
+// On to another sample of the same pixel.
+void ty_sampler_set_sample(ty_sampler* sampler, uint32_t sample);
 
 // Dimension groups. What a group is used for never depends on what happened before, so that a decision at one bounce
 // shifts no dimension of a later one.

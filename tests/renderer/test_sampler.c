@@ -123,6 +123,24 @@ static void test_is_a_pure_function(void** state)
     assert_memory_equal(first + 4, four, sizeof four);
 }
 
+// Eight numbers side by side are those of two groups one by one, and a sampler that was set to a sample is one made
+// for it.
+static void test_both_widths_agree(void** state)
+{
+    (void)state;
+    ty_sampler walking = ty_sampler_make(&sobol, seed, 12, 34, 0);
+    for (uint32_t i = 0; i < 4096; ++i)
+    {
+        float eight[8], four[8];
+        uint32_t group = i * 2654435761u >> 12;
+        fetch(12, 34, 15 * i, group, eight);
+        ty_sampler_set_sample(&walking, 15 * i);
+        ty_sampler_4d(&walking, group, four);
+        ty_sampler_4d(&walking, group + 1, four + 4);
+        assert_memory_equal(eight, four, sizeof eight);
+    }
+}
+
 static double correlation(const double* a, const double* b, int n)
 {
     double ab = 0.0;
@@ -209,6 +227,7 @@ int main(void)
         cmocka_unit_test(test_single_dimensions_are_stratified),
         cmocka_unit_test(test_later_blocks_are_nets),
         cmocka_unit_test(test_is_a_pure_function),
+        cmocka_unit_test(test_both_widths_agree),
         cmocka_unit_test(test_neighbours_are_independent),
         cmocka_unit_test(test_points_are_those_of_joe_and_kuo),
         cmocka_unit_test(test_dimensions_are_scrambled_apart),
