@@ -80,10 +80,11 @@ static const ty_material* find_shown(const ty_integrator* in, ty_ray* ray, ty_su
     return NULL;
 }
 
-void ty_debug_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray ray, ty_counters* counters,
+void ty_debug_sample(const ty_integrator* in, const ty_sampler* sampler, const ty_ray* begin, ty_counters* counters,
                      ty_film_sample* out)
 {
     const ty_scene* scene = in->scene;
+    ty_ray ray = *begin;
     ty_surface_point point;
     ty_bsdf bsdf;
     const ty_material* material = find_shown(in, &ray, &point);

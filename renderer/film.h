@@ -14,15 +14,23 @@ __extension__ typedef unsigned __int128 ty_u128;
 typedef struct ty_film_sample
 {
     ty_rgb radiance;
-    ty_rgb group[TY_LIGHT_GROUPS]; // its parts by light group, where the film has those
     ty_rgb albedo;
     ty_vec3 normal;
     ty_vec3 position;
-    float depth;       // m, along the camera's axis
-    uint32_t instance; // from 1 over the whole scene
-    bool hit;          // a surface: albedo to instance are set
-    bool covered;      // a surface or a visible area light
+    float depth;                   // m, along the camera's axis
+    uint32_t instance;             // from 1 over the whole scene
+    bool hit;                      // a surface: albedo to instance are set
+    bool covered;                  // a surface or a visible area light
+    ty_rgb group[TY_LIGHT_GROUPS]; // parts of the radiance by light group; those that the film has
 } ty_film_sample;
+
+static inline void ty_film_sample_begin(ty_film_sample* sample, uint32_t group_count)
+{
+    sample->radiance = (ty_rgb){0};
+    sample->hit = sample->covered = false;
+    for (uint32_t g = 0; g < group_count; ++g)
+        sample->group[g] = (ty_rgb){0};
+}
 
 // Light of a group, -1 = nobody asks.
 static inline void ty_film_sample_add(ty_film_sample* sample, int group, ty_rgb light)

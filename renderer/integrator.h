@@ -17,6 +17,7 @@ typedef struct ty_integrator
     ty_pixel_filter filter;
     ty_light_set lights;
     ty_sobol sobol;
+    uint32_t group_count;     // light groups of the film
     bool has_transparent;     // something light goes straight through
     bool has_media;           // clear bodies
     ty_media media;           // those the camera is in
@@ -38,8 +39,8 @@ void ty_integrator_record(const ty_integrator* in, const ty_bsdf* bsdf, ty_film_
 // Mean curvature of the mesh, 1/m in the world; 0 where the mesh has none.
 float ty_integrator_curvature(const ty_world* world, const ty_surface_point* point);
 
-// out is zeroed; the ray is the camera's.
-void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray ray, ty_counters* counters,
+// out has begun; the ray is the camera's.
+void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, const ty_ray* ray, ty_counters* counters,
                     ty_film_sample* out);
-void ty_debug_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray ray, ty_counters* counters,
+void ty_debug_sample(const ty_integrator* in, const ty_sampler* sampler, const ty_ray* ray, ty_counters* counters,
                      ty_film_sample* out);

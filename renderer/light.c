@@ -147,11 +147,13 @@ bool ty_light_set_sample(const ty_light_set* set, const ty_light_point* at, floa
                          ty_light_sample* out)
 {
     const ty_light_selection* s = &set->selections[at->link];
-    if (s->chosen_count == 0 && !s->tree)
-        return false;
-    float probability;
-    double rest;
-    int emitter = ty_light_select(set, at, refine(u_choice, u), &probability, &rest);
+    float probability = 1.0f;
+    double rest = 0.0;
+    int emitter = s->only;
+    if (emitter < 0 || emitter >= set->light_count)
+        rest = refine(u_choice, u);
+    if (emitter < 0)
+        emitter = ty_light_select(set, at, rest, &probability, &rest);
     if (emitter < 0)
         return false;
     out->shadows = true;
@@ -262,18 +264,18 @@ static float shape_pdf(const ty_light* light, ty_vec3 from, ty_vec3 wi)
     }
 }
 
-// out NULL: only asks.
-static bool shape_along(const ty_light_set* set, int index, const ty_ray* ray, float t_max, const ty_light_view* view,
-                        ty_rgb beta, ty_film_sample* out)
+static bool meets_shape(const ty_light* light, const ty_ray* ray, float t_max, const ty_light_view* view, float* t)
+{
+    return (light->visible & view->seen) && shape_meet(light, ray, t) && *t >= ray->t_min &&
+           (*t * TY_LIGHT_REACH < t_max || (!light->shadows && view->seen != TY_MASK_CAMERA));
+}
+
+// What a ray takes from a shape that it meets at t.
+static void add_shape(const ty_light_set* set, int index, const ty_ray* ray, float t, const ty_light_view* view,
+                      const ty_rgb* beta, ty_film_sample* out)
 {
     const ty_light* light = &set->lights[index];
-    float t;
-    if (!(light->visible & view->seen) || !shape_meet(light, ray, &t) || t < ray->t_min ||
-        (t * TY_LIGHT_REACH >= t_max && (light->shadows || view->seen == TY_MASK_CAMERA)))
-        return false;
-    if (!out)
-        return true;
-    ty_rgb due = ty_rgb_mul(beta, light->value);
+    ty_rgb due = ty_rgb_mul(*beta, light->value);
     if (!view->full)
         due = ty_rgb_mul(
             due, share(set, index, light->visible, view, shape_pdf(light, view->from.position, ray->direction)));
@@ -281,6 +283,17 @@ static bool shape_along(const ty_light_set* set, int index, const ty_ray* ray, f
         due = ty_rgb_mul(due, ty_rgb_make(ty_exp(-view->absorption.r * t), ty_exp(-view->absorption.g * t),
                                           ty_exp(-view->absorption.b * t)));
     ty_film_sample_add(out, light->group, due);
+}
+
+// out NULL: only asks.
+static bool shape_along(const ty_light_set* set, int index, const ty_ray* ray, float t_max, const ty_light_view* view,
+                        const ty_rgb* beta, ty_film_sample* out)
+{
+    float t;
+    if (!meets_shape(&set->lights[index], ray, t_max, view, &t))
+        return false;
+    if (out)
+        add_shape(set, index, ray, t, view, beta, out);
     return true;
 }
 
@@ -292,16 +305,10 @@ static bool box_met(const ty_light_node* node, const ty_ray* ray, ty_vec3 invers
     return enter <= leave * 1.00001f && leave >= 0.0f;
 }
 
-// No light hides another: every one along the ray counts.
-static bool shapes_along(const ty_light_set* set, const ty_light_selection* s, const ty_ray* ray, float t_max,
-                         const ty_light_view* view, ty_rgb beta, ty_film_sample* out)
+static bool shapes_by_place(const ty_light_set* set, const ty_light_node* nodes, const ty_ray* ray, float t_max,
+                            const ty_light_view* view, const ty_rgb* beta, ty_film_sample* out)
 {
     bool met = false;
-    for (int i = 0; i < s->shape_count && !s->shaping; ++i)
-        met |= shape_along(set, s->shapes[i], ray, t_max, view, beta, out);
-    if (!s->shaping)
-        return met;
-    const ty_light_node* nodes = s->shaping->nodes;
     ty_vec3 d = ray->direction; // a zero would make nan of a border at the origin
     ty_vec3 inverse = {1.0f / (d.x != 0.0f ? d.x : 1e-30f), 1.0f / (d.y != 0.0f ? d.y : 1e-30f),
                        1.0f / (d.z != 0.0f ? d.z : 1e-30f)};
@@ -323,6 +330,18 @@ static bool shapes_along(const ty_light_set* set, const ty_light_selection* s, c
             return met;
         index = stack[--depth];
     }
+}
+
+// No light hides another: every one along the ray counts.
+static inline bool shapes_along(const ty_light_set* set, const ty_light_selection* s, const ty_ray* ray, float t_max,
+                                const ty_light_view* view, const ty_rgb* beta, ty_film_sample* out)
+{
+    if (s->shaping)
+        return shapes_by_place(set, s->shaping->nodes, ray, t_max, view, beta, out);
+    bool met = false;
+    for (int i = 0; i < s->shape_count; ++i)
+        met |= shape_along(set, s->shapes[i], ray, t_max, view, beta, out);
+    return met;
 }
 
 static ty_rgb sky_along(const ty_light_set* set, int index, const ty_ray* ray, const ty_light_view* view)
@@ -348,16 +367,16 @@ static ty_rgb sky_along(const ty_light_set* set, int index, const ty_ray* ray, c
     return ty_rgb_mul(radiance, share(set, index, light->visible, view, pdf));
 }
 
-bool ty_light_set_along(const ty_light_set* set, const ty_ray* ray, float t, const ty_light_view* view, ty_rgb beta,
-                        ty_film_sample* out)
+bool ty_light_set_along(const ty_light_set* set, const ty_ray* ray, float t, const ty_light_view* view,
+                        const ty_rgb* beta, ty_film_sample* out)
 {
     const ty_light_selection* s = &set->selections[view->from.link];
-    bool met = s->shape_count > 0 && shapes_along(set, s, ray, t, view, beta, out);
+    bool met = shapes_along(set, s, ray, t, view, beta, out);
     for (int i = 0; i < s->sky_count; ++i)
     {
         const ty_light* sky = &set->lights[s->skies[i]];
         if (t == TY_FLOAT_MAX || (!sky->shadows && view->seen != TY_MASK_CAMERA))
-            ty_film_sample_add(out, sky->group, ty_rgb_mul(beta, sky_along(set, s->skies[i], ray, view)));
+            ty_film_sample_add(out, sky->group, ty_rgb_mul(*beta, sky_along(set, s->skies[i], ray, view)));
     }
     return met;
 }
@@ -369,7 +388,7 @@ bool ty_light_set_shines(const ty_light_set* set, const ty_ray* ray, const ty_li
     for (int i = 0; i < s->sky_count; ++i)
         if (!ty_rgb_is_black(sky_along(set, s->skies[i], ray, view)))
             return true;
-    return s->shape_count > 0 && shapes_along(set, s, ray, TY_FLOAT_MAX, view, one, NULL);
+    return shapes_along(set, s, ray, TY_FLOAT_MAX, view, &one, NULL);
 }
 
 ty_rgb ty_light_set_weight(const ty_light_set* set, const ty_surface_point* met, const ty_light_view* view, ty_vec3 wi)

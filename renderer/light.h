@@ -19,14 +19,14 @@ typedef struct ty_light
     unsigned visible;              // ty_mask
     bool shadows;                  // what stands in the way hides it
     ty_rgb value;                  // radiance, intensity, or irradiance where a directional light has no angle
-    ty_rgb horizon, ground;        // sky, value being the zenith
-    float falloff;                 // sky
     ty_vec3 center;                // m
     ty_frame frame;                // rectangle: sides t and b, facing n; disk, spot: facing n, up b; cylinder: along n;
                                    // directional: n towards the light; environment: its axes
     float half_size[2];            // m, rectangle; cylinder: half length first
     float area;                    // m^2
     float radius;                  // m
+    ty_rgb horizon, ground;        // sky, value being the zenith
+    float falloff;                 // sky
     float cos_outer;               // spot: of the half cone; directional: of the disc's half angle
     float one_minus_cos;           // directional: of the disc's half angle, 0 = sharp
     float fade;                    // spot: 1 / (cosine of where the fade begins - cos_outer)
@@ -73,6 +73,7 @@ typedef struct ty_light_selection
     float* cumulative;
     float* probability; // [emitter_count], 0 = not in the table
     int chosen_count;
+    int only;               // the emitter that is always chosen, -1 = there are none or several
     float endless;          // irradiance of those in the table, where there is a tree
     ty_light_tree* tree;    // NULL = the table has all
     int* shapes;            // lights that a ray can meet
@@ -123,8 +124,8 @@ bool ty_light_set_sample(const ty_light_set* set, const ty_light_point* at, floa
 
 // Emission that a ray meets up to distance t, weighted against light sampling (power heuristic), times beta to out.
 // t = TY_FLOAT_MAX also meets the skies. True when a visible shape is met.
-bool ty_light_set_along(const ty_light_set* set, const ty_ray* ray, float t, const ty_light_view* view, ty_rgb beta,
-                        ty_film_sample* out);
+bool ty_light_set_along(const ty_light_set* set, const ty_ray* ray, float t, const ty_light_view* view,
+                        const ty_rgb* beta, ty_film_sample* out);
 // Whether that could be anything at all, the world apart.
 bool ty_light_set_shines(const ty_light_set* set, const ty_ray* ray, const ty_light_view* view);
 
@@ -184,8 +185,17 @@ float ty_light_directional_pdf(const ty_light* light); // within its disc
 
 void ty_light_rectangle_init(ty_light* light, const ty_light_def* def);
 bool ty_light_rectangle_sample(const ty_light* light, ty_vec3 p, ty_vec2 u, ty_light_sample* out);
-bool ty_light_rectangle_meet(const ty_light* light, const ty_ray* ray, float* t); // the lit side alone
-float ty_light_rectangle_pdf(const ty_light* light, ty_vec3 p, ty_vec3 wi);       // wi meets it
+float ty_light_rectangle_pdf(const ty_light* light, ty_vec3 p, ty_vec3 wi); // wi meets it
+// The lit side alone. Every ray asks, and few are answered yes: one test of all conditions together.
+static inline bool ty_light_rectangle_meet(const ty_light* light, const ty_ray* ray, float* t)
+{
+    float cosine = -ty_dot(ray->direction, light->frame.n);
+    ty_vec3 d = ty_sub(ray->origin, light->center);
+    *t = ty_dot(d, light->frame.n) / cosine;
+    ty_vec3 q = ty_mad(d, ray->direction, *t);
+    return (cosine > 0.0f) & (*t > 0.0f) & (fabsf(ty_dot(q, light->frame.t)) <= light->half_size[0]) &
+           (fabsf(ty_dot(q, light->frame.b)) <= light->half_size[1]);
+}
 
 void ty_light_disk_init(ty_light* light, const ty_light_def* def);
 bool ty_light_disk_sample(const ty_light* light, ty_vec3 p, ty_vec2 u, ty_light_sample* out);

@@ -82,18 +82,6 @@ bool ty_light_rectangle_sample(const ty_light* light, ty_vec3 p, ty_vec2 u, ty_l
     return true;
 }
 
-bool ty_light_rectangle_meet(const ty_light* light, const ty_ray* ray, float* t)
-{
-    float cosine = -ty_dot(ray->direction, light->frame.n);
-    if (!(cosine > 0.0f))
-        return false;
-    ty_vec3 d = ty_sub(ray->origin, light->center);
-    *t = ty_dot(d, light->frame.n) / cosine;
-    ty_vec3 q = ty_mad(d, ray->direction, *t);
-    return *t > 0.0f && fabsf(ty_dot(q, light->frame.t)) <= light->half_size[0] &&
-           fabsf(ty_dot(q, light->frame.b)) <= light->half_size[1];
-}
-
 float ty_light_rectangle_pdf(const ty_light* light, ty_vec3 p, ty_vec3 wi)
 {
     view v;

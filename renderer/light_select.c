@@ -97,6 +97,7 @@ void ty_light_selection_init(ty_light_selection* s, const ty_light_set* set, con
     }
     fill_table(s);
     s->tree = ty_light_tree_create(leaves, leaf_count, emitters);
+    s->only = s->chosen_count == 1 && !s->tree ? s->chosen[0] : -1;
     ty_free(leaves);
 }
 
@@ -174,6 +175,8 @@ int ty_light_select(const ty_light_set* set, const ty_light_point* at, double u,
 float ty_light_select_probability(const ty_light_set* set, const ty_light_point* at, int emitter)
 {
     const ty_light_selection* s = &set->selections[at->link];
+    if (emitter == s->only)
+        return 1.0f;
     float share = endless_share(s, at);
     if (s->probability[emitter] > 0.0f)
         return share * s->probability[emitter];

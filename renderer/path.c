@@ -6,9 +6,11 @@
 // makes *u uniform again. False = the path ends.
 static bool survives(const ty_render_def* def, ty_path* p, float* u)
 {
-    float probability = ty_min(1.0f, sqrtf(ty_rgb_max(p->beta)));
-    if (p->bounce + 1 < def->roulette_depth || !(probability < 1.0f))
+    if (p->bounce + 1 < def->roulette_depth)
         return !ty_rgb_is_black(p->beta);
+    float probability = sqrtf(ty_rgb_max(p->beta));
+    if (!(probability < 1.0f))
+        return true;
     if (*u >= probability)
         return false;
     p->beta = ty_rgb_scale(p->beta, 1.0f / probability);
@@ -16,7 +18,7 @@ static bool survives(const ty_render_def* def, ty_path* p, float* u)
     return true;
 }
 
-// The way on after a sampled direction. False = the path ends.
+// The way on after a sampled direction; the view is from where light was gathered. False = the path ends.
 static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, float u, ty_path* p)
 {
     p->beta = ty_rgb_mul(p->beta, sample->weight);
@@ -29,7 +31,7 @@ static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sa
     ty_bsdf_spawn(bsdf, sample->wi, u, &p->ray);
     ty_cone_scatter(in, bsdf, sample, &p->cone);
     p->ray.mask = sample->kind;
-    p->view = ty_path_view(in, bsdf, sample);
+    ty_path_turn(in, bsdf, sample, &p->view);
     return true;
 }
 
@@ -38,7 +40,8 @@ static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sa
 static bool scatter(const ty_integrator* in, const ty_bsdf* bsdf, const float u[8], ty_path* p, ty_film_sample* out,
                     ty_counters* counters)
 {
-    ty_path_direct_light(in, p, bsdf, u + 4, p->beta, out, counters);
+    p->view.from = ty_path_light_point(in, bsdf);
+    ty_path_direct_light(in, p, bsdf, &p->view.from, u + 4, &p->beta, out, counters);
     ty_bsdf_sample sample;
     return ty_bsdf_sample_wi(bsdf, u[2], (ty_vec2){u[0], u[1]}, &sample) && go_on(in, bsdf, &sample, u[3], p);
 }
@@ -54,9 +57,10 @@ static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_
     ty_sampler_8d(sampler, TY_GROUP_COAT, c);
     ty_bsdf_sample glint;
     bool shines = ty_bsdf_sample_wi(&coat, c[2], (ty_vec2){c[0], c[1]}, &glint);
-    ty_path_direct_light(in, p, &coat, c + 4, p->beta, out, counters);
+    ty_light_point outside = ty_path_light_point(in, &coat);
+    ty_path_direct_light(in, p, &coat, &outside, c + 4, &p->beta, out, counters);
     if (shines)
-        ty_path_light_along(in, p, &coat, &glint, c[3], p->beta, out, counters);
+        ty_path_light_along(in, p, &coat, &outside, &glint, c[3], out, counters);
 
     ty_rgb weight;
     ty_rng extra = ty_sampler_extra(sampler, p->bounce);
@@ -65,17 +69,20 @@ static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_
     const float inside[3] = {pair[0], pair[1], pair[3]}; // the direction gets the group's best pair
     bool lit = ty_bsdf_take_interior(body, &in->scene->shading, inside, &extra, &weight);
     counters->interior_rays++;
+    ty_rgb beta = ty_rgb_mul(p->beta, weight);
+    p->view.from = ty_path_light_point(in, body);
     if (lit)
-        ty_path_direct_light(in, p, body, u + 4, ty_rgb_mul(p->beta, weight), out, counters);
+        ty_path_direct_light(in, p, body, &p->view.from, u + 4, &beta, out, counters);
 
     if (pair[2] < chance)
     {
         p->beta = ty_rgb_scale(p->beta, 1.0f / chance);
+        p->view.from = outside;
         bool goes = shines && go_on(in, &coat, &glint, u[3], p);
         p->view.done = true;
         return goes;
     }
-    p->beta = ty_rgb_scale(ty_rgb_mul(p->beta, weight), 1.0f / (1.0f - chance));
+    p->beta = ty_rgb_scale(beta, 1.0f / (1.0f - chance));
     ty_bsdf_sample sample;
     return lit && ty_bsdf_sample_wi(body, u[2], (ty_vec2){u[0], u[1]}, &sample) && go_on(in, body, &sample, u[3], p);
 }
@@ -144,9 +151,9 @@ static bool meets_boundary(const ty_integrator* in, const ty_material* material,
     return true;
 }
 
-static ty_rgb along_medium(const ty_integrator* in, const ty_path* p)
+static ty_rgb along_medium(const ty_path* p)
 {
-    const ty_medium* top = in->has_media ? ty_media_top(&p->media) : NULL;
+    const ty_medium* top = ty_media_top(&p->media);
     return top ? top->absorption : ty_rgb_grey(0.0f);
 }
 
@@ -163,12 +170,15 @@ static void arrive(const ty_integrator* in, float distance, ty_path* p)
 // Lights along the ray up to t.
 static void meet_lights(const ty_integrator* in, float t, const ty_path* p, ty_film_sample* out)
 {
-    ty_film_sample limited = {0};
-    bool limit = p->indirect && in->scene->render.indirect_clamp > 0.0f;
-    bool covered = ty_light_set_along(&in->lights, &p->ray, t, &p->view, p->beta, limit ? &limited : out);
-    if (limit)
+    if (p->indirect && in->scene->render.indirect_clamp > 0.0f)
+    {
+        ty_film_sample limited;
+        ty_film_sample_begin(&limited, in->group_count);
+        (void)ty_light_set_along(&in->lights, &p->ray, t, &p->view, &p->beta, &limited);
         ty_path_add_limited(in, &limited, out);
-    out->covered = out->covered || (p->bounce == 0 && covered);
+    }
+    else if (ty_light_set_along(&in->lights, &p->ray, t, &p->view, &p->beta, out) && p->bounce == 0)
+        out->covered = true;
 }
 
 // The surface where the path scatters next, past all it goes straight through. False = it left the scene.
@@ -182,7 +192,8 @@ static bool find_surface(const ty_integrator* in, const ty_sampler* sampler, ty_
         ty_surface_point point;
         float outside = 1.0f;
         bool found = ty_world_intersect(scene->world, &p->ray, &hit);
-        p->view.absorption = along_medium(in, p);
+        if (in->has_media)
+            p->view.absorption = along_medium(p);
         if (!p->view.done)
             meet_lights(in, found ? hit.t : TY_FLOAT_MAX, p, out);
         if (!found)
@@ -212,7 +223,11 @@ static void begin(const ty_integrator* in, const ty_ray* ray, ty_path* p)
     p->ray = *ray;
     p->cone = ty_cone_begin(in, ray);
     p->beta = ty_rgb_grey(1.0f);
-    p->view = (ty_light_view){.full = true, .seen = TY_MASK_CAMERA};
+    p->view.from.link = 0;
+    p->view.full = true;
+    p->view.done = false;
+    p->view.seen = TY_MASK_CAMERA;
+    p->view.absorption = ty_rgb_grey(0.0f);
     p->bounce = p->passed = 0;
     p->soft = p->indirect = p->at_boundary = false;
     p->absorption[0] = p->absorption[1] = ty_rgb_grey(0.0f);
@@ -228,12 +243,12 @@ static void add_emission(const ty_integrator* in, const ty_bsdf* bsdf, const ty_
                 ty_rgb_mul(ty_rgb_mul(p->beta, bsdf->emission), weight), out);
 }
 
-void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, ty_ray ray, ty_counters* counters,
+void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, const ty_ray* ray, ty_counters* counters,
                     ty_film_sample* out)
 {
     ty_path p;
     ty_bsdf bsdf;
-    begin(in, &ray, &p);
+    begin(in, ray, &p);
     for (; find_surface(in, sampler, &p, &bsdf, counters, out); p.bounce++)
     {
         if (!ty_rgb_is_black(bsdf.emission))

@@ -25,22 +25,22 @@ typedef struct ty_path
 // Where a surface gathers light, for choosing a light there.
 ty_light_point ty_path_light_point(const ty_integrator* in, const ty_bsdf* bsdf);
 
-// The ray that leaves it towards a sampled direction.
-ty_light_view ty_path_view(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample);
+// A ray leaves the surface towards a sampled direction: what of the view follows from that.
+void ty_path_turn(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, ty_light_view* view);
 
-// One light sample at a surface, times beta to out. u: two for the light's surface, one to choose it, one for the ray's
-// start.
-void ty_path_direct_light(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const float u[4], ty_rgb beta,
-                          ty_film_sample* out, ty_counters* counters);
+// One light sample at a surface that gathers light there, times beta to out. u: two for the light's surface, one to
+// choose it, one for the ray's start.
+void ty_path_direct_light(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const ty_light_point* at,
+                          const float u[4], const ty_rgb* beta, ty_film_sample* out, ty_counters* counters);
 
 // What the sampled direction of a coat meets of the lights, the scene between, times beta to out. u: for the ray's
 // start.
-void ty_path_light_along(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const ty_bsdf_sample* sample,
-                         float u, ty_rgb beta, ty_film_sample* out, ty_counters* counters);
+void ty_path_light_along(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const ty_light_point* at,
+                         const ty_bsdf_sample* sample, float u, ty_film_sample* out, ty_counters* counters);
 
 // Adds light found at the path's end; what is indirect can be limited, for less noise and a darker picture.
 void ty_path_add(const ty_integrator* in, bool indirect, int group, ty_rgb light, ty_film_sample* out);
-// The same of all that a ray met together.
+// The same of all that a ray met together, in a sample of its own.
 void ty_path_add_limited(const ty_integrator* in, const ty_film_sample* met, ty_film_sample* out);
 
 // --- path_media.c ---
@@ -52,5 +52,5 @@ void ty_path_pass(const ty_surface_point* point, float t, ty_ray* ray);   // t: 
 void ty_path_leave(const ty_scene* scene, const ty_material* material, const ty_surface_point* point, ty_vec3 direction,
                    ty_media* media);
 // What arrives along a shadow ray past all that stands in its way, and through the medium in which it begins.
-ty_rgb ty_path_transmittance(const ty_integrator* in, ty_ray ray, ty_rgb absorption, float distance,
+ty_rgb ty_path_transmittance(const ty_integrator* in, ty_ray* ray, ty_rgb absorption, float distance,
                              ty_counters* counters);

@@ -17,13 +17,14 @@ ty_light_point ty_path_light_point(const ty_integrator* in, const ty_bsdf* bsdf)
                             in->scene->objects[bsdf->point.object].light_link};
 }
 
-ty_light_view ty_path_view(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample)
+void ty_path_turn(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, ty_light_view* view)
 {
-    ty_light_view view = {
-        .from = ty_path_light_point(in, bsdf), .pdf = sample->pdf, .full = sample->delta, .seen = sample->kind};
+    view->pdf = sample->pdf;
+    view->full = sample->delta;
+    view->done = false;
+    view->seen = sample->kind;
     if (in->lights.restricted && !sample->delta)
-        view.parts = ty_bsdf_eval_parts(bsdf, sample->wi);
-    return view;
+        view->parts = ty_bsdf_eval_parts(bsdf, sample->wi);
 }
 
 // Weight of a light's sample against the surface's own sampling of its direction.
@@ -65,7 +66,7 @@ void ty_path_add_limited(const ty_integrator* in, const ty_film_sample* met, ty_
     float limit = in->scene->render.indirect_clamp, most = ty_rgb_max(met->radiance);
     float scale = most > limit ? limit / most : 1.0f;
     out->radiance = ty_rgb_add(out->radiance, ty_rgb_scale(met->radiance, scale));
-    for (int i = 0; i < TY_LIGHT_GROUPS; ++i)
+    for (uint32_t i = 0; i < in->group_count; ++i)
         out->group[i] = ty_rgb_add(out->group[i], ty_rgb_scale(met->group[i], scale));
 }
 
@@ -84,12 +85,11 @@ static void aim(const ty_light_sample* light, ty_ray* shadow)
         shadow->direction = ty_mul(way, 1.0f / length);
 }
 
-void ty_path_direct_light(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const float u[4], ty_rgb beta,
-                          ty_film_sample* out, ty_counters* counters)
+void ty_path_direct_light(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const ty_light_point* at,
+                          const float u[4], const ty_rgb* beta, ty_film_sample* out, ty_counters* counters)
 {
     ty_light_sample light;
-    ty_light_point at = ty_path_light_point(in, bsdf);
-    if (ty_bsdf_is_delta(bsdf) || !ty_light_set_sample(&in->lights, &at, u[2], (ty_vec2){u[0], u[1]}, &light))
+    if (ty_bsdf_is_delta(bsdf) || !ty_light_set_sample(&in->lights, at, u[2], (ty_vec2){u[0], u[1]}, &light))
         return;
     float pdf = 0.0f;
     ty_rgb value = ty_rgb_mul(visible_value(bsdf, &light, &pdf), light.radiance);
@@ -101,11 +101,11 @@ void ty_path_direct_light(const ty_integrator* in, const ty_path* p, const ty_bs
     aim(&light, &shadow);
     bool beyond = (ty_dot(light.wi, bsdf->point.ng) > 0.0f) != bsdf->entering;
     ty_rgb absorption = p->absorption[beyond];
-    value = ty_rgb_mul(value, light.shadows ? ty_path_transmittance(in, shadow, absorption, light.distance, counters)
+    value = ty_rgb_mul(value, light.shadows ? ty_path_transmittance(in, &shadow, absorption, light.distance, counters)
                                             : ty_path_absorbed(absorption, light.distance));
     if (ty_rgb_is_black(value))
         return;
-    ty_path_add(in, p->soft, light.group, ty_rgb_scale(ty_rgb_mul(beta, value), weight), out);
+    ty_path_add(in, p->soft, light.group, ty_rgb_scale(ty_rgb_mul(*beta, value), weight), out);
 }
 
 // The rest of beta beyond a surface that light goes straight through. False = it ends there.
@@ -122,24 +122,26 @@ static bool look_through(const ty_scene* scene, const ty_hit* hit, ty_ray* ray, 
     return !ty_rgb_is_black(*beta);
 }
 
-void ty_path_light_along(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const ty_bsdf_sample* sample,
-                         float u, ty_rgb beta, ty_film_sample* out, ty_counters* counters)
+void ty_path_light_along(const ty_integrator* in, const ty_path* p, const ty_bsdf* bsdf, const ty_light_point* at,
+                         const ty_bsdf_sample* sample, float u, ty_film_sample* out, ty_counters* counters)
 {
-    ty_light_view view = ty_path_view(in, bsdf, sample);
-    view.absorption = p->absorption[0]; // a reflection stays on wo's side
+    // a reflection stays on wo's side
+    ty_light_view view = {.from = *at, .absorption = p->absorption[0]};
+    ty_path_turn(in, bsdf, sample, &view);
     ty_ray ray;
     ty_bsdf_spawn(bsdf, sample->wi, u, &ray);
     ray.mask = TY_MASK_GLOSSY;
     if (!ty_light_set_shines(&in->lights, &ray, &view))
         return;
-    ty_film_sample limited = {0}, *sum = p->soft && in->scene->render.indirect_clamp > 0.0f ? &limited : out;
-    beta = ty_rgb_mul(beta, sample->weight);
+    ty_film_sample limited, *sum = p->soft && in->scene->render.indirect_clamp > 0.0f ? &limited : out;
+    ty_film_sample_begin(&limited, in->group_count);
+    ty_rgb beta = ty_rgb_mul(p->beta, sample->weight);
     for (int i = 0; i < TY_PATH_MAX_PASSED; ++i)
     {
         ty_hit hit;
         counters->path_rays++;
         bool found = ty_world_intersect(in->scene->world, &ray, &hit);
-        (void)ty_light_set_along(&in->lights, &ray, found ? hit.t : TY_FLOAT_MAX, &view, beta, sum);
+        (void)ty_light_set_along(&in->lights, &ray, found ? hit.t : TY_FLOAT_MAX, &view, &beta, sum);
         if (!found || !look_through(in->scene, &hit, &ray, &beta))
             break;
     }

@@ -94,39 +94,39 @@ void ty_path_leave(const ty_scene* scene, const ty_material* material, const ty_
 }
 
 // The way through what lets pass on its own. *inside: how far it goes through the medium in which it begins.
-static ty_rgb through_surfaces(const ty_integrator* in, ty_ray ray, float* inside, ty_counters* counters)
+static ty_rgb through_surfaces(const ty_integrator* in, ty_ray* ray, float* inside, ty_counters* counters)
 {
     const ty_scene* scene = in->scene;
     ty_rgb through = ty_rgb_grey(1.0f);
     float way = 0.0f;
-    ray.mask = TY_MASK_SHADOW_TRANSPARENT;
+    ray->mask = TY_MASK_SHADOW_TRANSPARENT;
     for (int i = 0; i < TY_PATH_MAX_PASSED; ++i)
     {
         ty_hit hit;
         ty_surface_point point;
         counters->shadow_rays++;
-        if (!ty_world_intersect(scene->world, &ray, &hit))
+        if (!ty_world_intersect(scene->world, ray, &hit))
             return through;
         ty_world_surface(scene->world, &hit, &point);
         const ty_material* material = ty_scene_material(scene, hit.object, hit.instance, hit.triangle);
-        ty_transparency t = ty_material_transparency(material, &scene->shading, &point, ty_neg(ray.direction));
+        ty_transparency t = ty_material_transparency(material, &scene->shading, &point, ty_neg(ray->direction));
         through = ty_rgb_mul(through, t.through);
         if (ty_rgb_is_black(through))
             return through;
         way += hit.t;
-        if (leaves(material, &point, ray.direction))
+        if (leaves(material, &point, ray->direction))
             *inside = ty_min(*inside, way);
-        ty_path_pass(&point, hit.t, &ray);
+        ty_path_pass(&point, hit.t, ray);
     }
     return ty_rgb_grey(0.0f);
 }
 
-ty_rgb ty_path_transmittance(const ty_integrator* in, ty_ray ray, ty_rgb absorption, float distance,
+ty_rgb ty_path_transmittance(const ty_integrator* in, ty_ray* ray, ty_rgb absorption, float distance,
                              ty_counters* counters)
 {
-    ray.mask = TY_MASK_SHADOW;
+    ray->mask = TY_MASK_SHADOW;
     counters->shadow_rays++;
-    if (ty_world_occluded(in->scene->world, &ray))
+    if (ty_world_occluded(in->scene->world, ray))
         return ty_rgb_grey(0.0f);
     ty_rgb through = in->has_transparent ? through_surfaces(in, ray, &distance, counters) : ty_rgb_grey(1.0f);
     return ty_rgb_mul(through, ty_path_absorbed(absorption, distance));

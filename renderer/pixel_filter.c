@@ -24,6 +24,7 @@ void ty_pixel_filter_init(ty_pixel_filter* filter, ty_filter_kind kind, float wi
     {
         CELLS = 1 << 14
     };
+    filter->box_width = kind == TY_FILTER_BOX ? width : 0.0f;
     double total = 0.0;
     for (int i = 0; i < CELLS; ++i)
         total += filter_shape(kind, (i + 0.5) / CELLS);
@@ -45,6 +46,8 @@ void ty_pixel_filter_init(ty_pixel_filter* filter, ty_filter_kind kind, float wi
 
 float ty_pixel_filter_sample(const ty_pixel_filter* filter, float u)
 {
+    if (filter->box_width > 0.0f)
+        return filter->box_width * (u - 0.5f);
     float s = 2.0f * u - 1.0f;
     float x = fabsf(s) * (float)TY_FILTER_STEPS;
     int step = x < (float)TY_FILTER_STEPS ? (int)x : TY_FILTER_STEPS - 1;

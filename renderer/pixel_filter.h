@@ -9,6 +9,7 @@
 typedef struct ty_pixel_filter
 {
     float offset[TY_FILTER_STEPS + 1];
+    float box_width; // 0 = no box
 } ty_pixel_filter;
 
 // width: full width in pixels, > 0.

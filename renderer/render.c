@@ -41,6 +41,7 @@ static void integrator_init(ty_integrator* in, const ty_scene* scene, const ty_f
     ty_pixel_filter_init(&in->filter, (ty_filter_kind)scene->film.filter, scene->film.filter_width);
     ty_light_set_init(&in->lights, scene, film->group_count > 0);
     ty_sobol_init(&in->sobol);
+    in->group_count = film->group_count;
     for (int i = 0; i < scene->material_count; ++i)
     {
         unsigned traits = ty_material_traits(scene->materials[i]);
@@ -103,10 +104,11 @@ static void render_pixel(render* r, int x, int y, ty_counters* counters)
     const ty_integrator* in = &r->integrator;
     bool debug = in->scene->render.integrator != TY_INTEGRATOR_PATH;
     ty_pixel_sums sums = ty_pixel_sums_make(r->film->group_count);
+    ty_sampler sampler = ty_sampler_make(&in->sobol, in->scene->render.seed, x, y, (uint32_t)r->pass_begin);
     for (int s = r->pass_begin; s < r->pass_end; ++s)
     {
-        ty_sampler sampler = ty_sampler_make(&in->sobol, in->scene->render.seed, x, y, (uint32_t)s);
         float u[4];
+        ty_sampler_set_sample(&sampler, (uint32_t)s);
         ty_sampler_4d(&sampler, TY_GROUP_CAMERA, u);
         float px = (float)x + 0.5f + ty_pixel_filter_sample(&in->filter, u[0]);
         float py = (float)y + 0.5f + ty_pixel_filter_sample(&in->filter, u[1]);
@@ -115,11 +117,12 @@ static void render_pixel(render* r, int x, int y, ty_counters* counters)
         const ty_camera* camera = camera_at(in, &sampler, &time, &moved);
         ty_ray ray = ty_camera_ray(camera, px, py, (ty_vec2){u[2], u[3]});
         ray.time = time;
-        ty_film_sample sample = {0};
+        ty_film_sample sample;
+        ty_film_sample_begin(&sample, in->group_count);
         if (debug)
-            ty_debug_sample(in, &sampler, ray, counters, &sample);
+            ty_debug_sample(in, &sampler, &ray, counters, &sample);
         else
-            ty_path_sample(in, &sampler, ray, counters, &sample);
+            ty_path_sample(in, &sampler, &ray, counters, &sample);
         if (sample.hit)
             sample.depth = ty_camera_depth(camera, sample.position);
         count_fate(counters, ty_pixel_sums_add(&sums, &sample, (uint32_t)s), x, y, s);
