@@ -162,12 +162,10 @@ ty_status ty_render_find(const ty_render_job* job, const ty_scene* scene, bool* 
     snprintf(samples, sizeof samples, "%d-%d", job->setup.sample_begin, job->setup.sample_end - 1);
     *found = has_text(exr, "tsuya/hash", scene->hash) && has_text(exr, "tsuya/samples", samples) &&
              !ty_exr_find_attribute(exr, "tsuya/partial") &&
-             memcmp(exr->data_window, job->setup.crop, sizeof job->setup.crop) == 0;
-    ty_status status = TY_OK;
-    if (*found && job->preview[0] && !ty_file_exists(job->preview))
-    {
-        status = write_preview(job, exr, error);
-    }
+             memcmp(exr->data_window, job->setup.crop, sizeof job->setup.crop) == 0 &&
+             ty_film_setup_matches(&job->setup, exr);
+    // The PNG does not tell how it was developed: it is made again.
+    ty_status status = *found && job->preview[0] ? write_preview(job, exr, error) : TY_OK;
     ty_exr_destroy(exr);
     return status;
 }

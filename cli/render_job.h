@@ -36,7 +36,8 @@ TY_CHECKED ty_status ty_render_plan(ty_render_job* job, const ty_scene* scene);
 
 // Renders, writes what there is (also after a signal) and reports.
 TY_CHECKED ty_status ty_render_frame(ty_render_job* job, const ty_scene* scene, ty_workers* workers, ty_error* error);
-// Whether the frame in work is there, complete and of this very scene; its PNG is made if only that is missing.
+// Whether the frame in work is there, complete, of this very scene and with the channels asked for; then its PNG is
+// developed from it.
 TY_CHECKED ty_status ty_render_find(const ty_render_job* job, const ty_scene* scene, bool* found, ty_error* error);
 
 // --- render.c ---
@@ -54,8 +55,8 @@ TY_CHECKED ty_status ty_render_run(const ty_arguments* arguments, ty_scene_argum
         {"exposure", 'e', "EV", "of the PNG: stops, before the view"},                                                 \
         {"bits", 0, "8|16", "of the PNG: bits a channel (default 8)"},                                                 \
         {"video", 0, "OUT.mp4", "the developed frames as a video, by ffmpeg"},                                         \
-        {"skip-existing", 0, NULL, "leave frames that are there, complete and of this very scene"}, TY_SCENE_OPTIONS,  \
-        {"quick", 'q', NULL, "half size, 16 samples, where --size, --spp and --set say nothing"},                      \
+        {"skip-existing", 0, NULL, "leave frames that are there: complete, of this very scene and these channels"},    \
+        TY_SCENE_OPTIONS, {"quick", 'q', NULL, "half size, 16 samples, where --size, --spp and --set say nothing"},    \
         {"spp", 0, "N", "samples a pixel"},                                                                            \
         {"samples", 0, "A-B", "only these sample indices: a part for `tsuya merge`"},                                  \
         {"size", 0, "WxH", "picture size"}, {"crop", 0, "x0,y0,x1,y1", "only these pixels (inclusive)"},               \

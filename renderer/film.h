@@ -136,6 +136,7 @@ TY_CHECKED ty_status ty_film_from_part(const ty_exr* exr, const char* name, ty_f
 void ty_film_add_range(int sample_begin, int sample_end, ty_exr* exr); // "tsuya/samples"
 
 #define TY_GROUP_CHANNEL "light."
+#define TY_PART_CHANNEL "part."
 #define TY_KEY_SAMPLES "tsuya/samples"
 #define TY_KEY_PARTIAL "tsuya/partial"
 #define TY_KEY_PART "tsuya/part"

@@ -4,6 +4,7 @@
 #include "film.h"
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 #include <tsuya/base/log.h>
 
 #define HALF_MAX 65504.0f
@@ -102,7 +103,48 @@ static void write_pixel(const ty_pixel_sums* sums, const ty_exr_type types[CHANN
     }
 }
 
-// The beauty by light groups: "light.NAME.R" and so on.
+// "light.NAME.R" and so on.
+static void group_channel(const char* group, int component, char name[64])
+{
+    snprintf(name, 64, TY_GROUP_CHANNEL "%.*s.%c", TY_LIGHT_GROUP_NAME, group, "RGB"[component]);
+}
+
+static ty_exr_type channel_type(const channel* row, bool half)
+{
+    return row->type == TY_EXR_HALF && !half ? TY_EXR_FLOAT : row->type;
+}
+
+static bool has_channel(const ty_exr* exr, const char* name, ty_exr_type type)
+{
+    const ty_exr_channel* found = ty_exr_find_channel(exr, name);
+    return found && found->type == type;
+}
+
+bool ty_film_setup_matches(const ty_film_setup* setup, const ty_exr* exr)
+{
+    int expected = 0, there = 0;
+    bool same = true;
+    for (int c = 0; c < CHANNEL_COUNT; ++c)
+    {
+        const channel* row = &channels[c];
+        if (row->from == FIELD_SAMPLES || (row->aov && !(setup->aovs & row->aov)))
+            continue;
+        same = same && has_channel(exr, row->name, channel_type(row, setup->half));
+        ++expected;
+    }
+    for (int g = 0; setup->aovs & TY_AOV_LIGHT && g < setup->group_count; ++g)
+        for (int c = 0; c < 3; ++c, ++expected)
+        {
+            char name[64];
+            group_channel(setup->groups[g], c, name);
+            same = same && has_channel(exr, name, setup->half ? TY_EXR_HALF : TY_EXR_FLOAT);
+        }
+    for (int i = 0; i < exr->channel_count; ++i)
+        there += strncmp(exr->channels[i].name, TY_PART_CHANNEL, sizeof TY_PART_CHANNEL - 1) != 0;
+    return same && there == expected;
+}
+
+// The beauty by light groups.
 static void add_groups(const ty_film* film, ty_exr* exr)
 {
     ty_exr_type type = film->setup.half ? TY_EXR_HALF : TY_EXR_FLOAT;
@@ -111,7 +153,7 @@ static void add_groups(const ty_film* film, ty_exr* exr)
         for (int c = 0; c < 3; ++c)
         {
             char name[64];
-            snprintf(name, sizeof name, TY_GROUP_CHANNEL "%s.%c", film->group_names[g], "RGB"[c]);
+            group_channel(film->group_names[g], c, name);
             float* pixels = ty_exr_add_channel(exr, name, type);
             for (size_t i = 0; i < count; ++i)
             {
@@ -129,7 +171,7 @@ void ty_film_add_channels(const ty_film* film, bool partial, ty_exr* exr)
     for (int c = 0; c < CHANNEL_COUNT; ++c)
     {
         const channel* row = &channels[c];
-        types[c] = row->type == TY_EXR_HALF && !film->setup.half ? TY_EXR_FLOAT : row->type;
+        types[c] = channel_type(row, film->setup.half);
         bool present = row->from == FIELD_SAMPLES ? partial : !row->aov || film->setup.aovs & row->aov;
         pixels[c] = present ? ty_exr_add_channel(exr, row->name, types[c]) : NULL;
     }

@@ -95,7 +95,7 @@ static int add_words(word* words, char names[][64], int count, const char* name,
     {
         TY_ASSERT(count < WORD_COUNT);
         words[count] = (word){offset, width, i, NULL};
-        snprintf(names[count], 64, "part.%s.%d", name, i);
+        snprintf(names[count], 64, TY_PART_CHANNEL "%s.%d", name, i);
     }
     return count;
 }

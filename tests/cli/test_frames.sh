@@ -63,6 +63,26 @@ expect 0 "$tsuya" render scene.yaml --frames 1-3 -o f.####.exr --develop --skip-
 expect 0 "$tsuya" render scene.yaml --frames 1-3 -o f.####.exr --skip-existing --progress none --seed 4
 [ -n "$(find f.0001.exr -newermt '2002-01-01')" ] || fail "a frame of another scene was taken for this one's"
 
+# So do those with the channels asked for, no fewer and no more; what is developed from them is as asked for.
+key=(render scene.yaml --frames 1 -o k.#.exr --skip-existing --progress none --size 16x16 --spp 2)
+expect 0 "$tsuya" "${key[@]}" --aov Z,albedo
+for channels in Z,albedo Z,N Z all all none Z,albedo light light 'Z,albedo'; do
+    touch -d '2001-01-01' k.1.exr
+    expect 0 "$tsuya" "${key[@]}" --aov "$channels" --set lights.1.group=window
+    [ -n "$(find k.1.exr -newermt '2002-01-01')" ] && made=1 || made=0
+    [ "$channels" = "${before:-}" ] && again=0 || again=1
+    [ $made -eq $again ] || fail "--skip-existing: $channels after ${before:-another scene}: made $made, expected $again"
+    before=$channels
+done
+expect 0 "$tsuya" "${key[@]}" --aov Z,albedo --samples 0-0
+touch -d '2001-01-01' k.1.exr
+expect 0 "$tsuya" "${key[@]}" --aov Z,albedo --samples 0-0
+[ -z "$(find k.1.exr -newermt '2002-01-01')" ] || fail "a part that is there was rendered again"
+expect 0 "$tsuya" "${key[@]}" --aov none --develop
+cp k.1.png dark.png
+expect 0 "$tsuya" "${key[@]}" --aov none --develop --exposure 2
+cmp -s dark.png k.1.png && fail "the picture was not developed as asked for"
+
 # Mistakes, before anything is rendered.
 expect 2 "$tsuya" render scene.yaml --frames 1-3 -o plain.exr
 says "####"

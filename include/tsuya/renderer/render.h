@@ -74,6 +74,10 @@ typedef struct ty_film_write
 } ty_film_write;
 TY_CHECKED ty_status ty_film_to_exr(const ty_film* film, const ty_film_write* how, ty_exr** out, ty_error* error);
 
+// Whether a picture has the channels that a film of this setup gives, each of its type and no other; the sums of parts
+// are not looked at.
+bool ty_film_setup_matches(const ty_film_setup* setup, const ty_exr* exr);
+
 // Joins parts written with `part`: same hash, seed, size and window; their sample ranges follow each other. The result
 // has the bytes that one run of the joined range writes: a picture if that is all the scene asks for, else a part
 // again. A gap or an overlap is TY_BAD_FILE that names it.
