@@ -99,7 +99,8 @@ void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point
                               .u = hit->u,
                               .v = hit->v,
                               .time = hit->time,
-                              .horizon = horizon_at(prototype, hit->triangle, &m, n, length)};
+                              .horizon = horizon_at(prototype, hit->triangle, &m, n, length),
+                              .convex = prototype->topology.convex};
     if (mesh->uvs)
     {
         ty_vec2 a = mesh->uvs[c.v[0]], b = mesh->uvs[c.v[1]], d = mesh->uvs[c.v[2]];

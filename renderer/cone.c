@@ -57,8 +57,10 @@ void ty_cone_scatter(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf
         // The normal turns by this angle across the width.
         float turn = ty_integrator_curvature(in->scene->world, &bsdf->point) * cone->width;
         turn = bsdf->entering ? turn : -turn;
-        float eta = bsdf->eta > 0.0f ? bsdf->eta : 1.0f;
-        cone->spread = sample->transmitted ? (cone->spread + turn) / eta - turn : cone->spread + 2.0f * turn;
+        if (!sample->transmitted)
+            cone->spread += 2.0f * turn;
+        else
+            cone->spread = (cone->spread + turn) / (bsdf->eta > 0.0f ? bsdf->eta : 1.0f) - turn;
     }
     if (extra > 0.0f)
         cone->spread = sqrtf(cone->spread * cone->spread + extra * extra);

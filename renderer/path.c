@@ -189,7 +189,7 @@ static bool find_surface(const ty_integrator* in, const ty_sampler* sampler, ty_
     for (; p->passed < TY_PATH_MAX_PASSED; ++p->passed)
     {
         ty_hit hit;
-        ty_surface_point point;
+        ty_surface_point* point = &bsdf->point; // where the bsdf is prepared: copies of what was just written are slow
         float outside = 1.0f;
         bool found = ty_world_intersect(scene->world, &p->ray, &hit);
         if (in->has_media)
@@ -198,19 +198,19 @@ static bool find_surface(const ty_integrator* in, const ty_sampler* sampler, ty_
             meet_lights(in, found ? hit.t : TY_FLOAT_MAX, p, out);
         if (!found)
             return false;
-        ty_world_surface(scene->world, &hit, &point);
-        ty_cone_arrive(&p->cone, p->ray.direction, hit.t, &point);
+        ty_world_surface(scene->world, &hit, point);
+        ty_cone_arrive(&p->cone, p->ray.direction, hit.t, point);
         const ty_material* material = ty_scene_material(scene, hit.object, hit.instance, hit.triangle);
         unsigned traits = ty_material_traits(material);
         arrive(in, hit.t, p);
-        if (((traits & TY_TRAIT_TRANSPARENT) && goes_through(in, sampler, material, &point, p)) ||
-            ((traits & TY_TRAIT_MEDIUM) && !meets_boundary(in, material, &point, p, &outside)))
+        if (((traits & TY_TRAIT_TRANSPARENT) && goes_through(in, sampler, material, point, p)) ||
+            ((traits & TY_TRAIT_MEDIUM) && !meets_boundary(in, material, point, p, &outside)))
         {
-            ty_path_pass(&point, hit.t, &p->ray);
+            ty_path_pass(point, hit.t, &p->ray);
             counters->path_rays++;
             continue;
         }
-        ty_material_prepare_within(material, &scene->shading, &point, ty_neg(p->ray.direction), outside, bsdf);
+        ty_material_prepare_within(material, &scene->shading, point, ty_neg(p->ray.direction), outside, bsdf);
         out->covered = true;
         counters->path_vertices++;
         return true;

@@ -7,6 +7,7 @@ static ty_vec3 lit_side(const ty_bsdf* bsdf)
 {
     bool one_side =
         bsdf->kind == TY_BSDF_CDRF_EXIT || bsdf->kind == TY_BSDF_CDRF_COAT ||
+        (bsdf->kind == TY_BSDF_MATTE && !bsdf->bent) ||
         (bsdf->kind == TY_BSDF_SURFACE && !(bsdf->transmission_weight > 0.0f) && !bsdf->thin && !bsdf->bent);
     return one_side ? bsdf->frame.n : (ty_vec3){0};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dispatch over the closed set of bsdf kinds, and the rays that leave them.
-#include "lobes.h"
+#include "matte.h"
 
 bool ty_bsdf_is_delta(const ty_bsdf* bsdf)
 {
@@ -8,6 +8,8 @@ bool ty_bsdf_is_delta(const ty_bsdf* bsdf)
     {
     case TY_BSDF_SURFACE:
         return ty_surface_is_delta(bsdf);
+    case TY_BSDF_MATTE: // black: there is nothing to light
+        return ty_matte_is_black(bsdf);
     case TY_BSDF_CDRF_COAT:
         return bsdf->coat_alpha == 0.0f;
     case TY_BSDF_CDRF: // nothing can be evaluated before it is resolved
@@ -26,6 +28,8 @@ static ty_rgb eval_local(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf
     {
     case TY_BSDF_SURFACE:
         return ty_surface_eval(bsdf, wo, wi, pdf);
+    case TY_BSDF_MATTE:
+        return ty_matte_eval(bsdf, wi.z, pdf);
     case TY_BSDF_CDRF_LOCAL:
         return ty_local_eval(bsdf, wo, wi, pdf);
     case TY_BSDF_CDRF_EXIT:
@@ -65,12 +69,17 @@ static ty_rgb eval_bent(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi_world, float
     return f;
 }
 
-ty_rgb ty_bsdf_eval(const ty_bsdf* bsdf, ty_vec3 wi_world, float* pdf)
+static __attribute__((noinline)) ty_rgb eval_any(const ty_bsdf* bsdf, ty_vec3 wi_world, float* pdf)
 {
     ty_vec3 wo = ty_to_local(bsdf->frame, bsdf->wo);
     if (bsdf->bent)
         return eval_bent(bsdf, wo, wi_world, pdf);
     return eval_local(bsdf, wo, ty_to_local(bsdf->frame, wi_world), pdf);
+}
+
+ty_rgb ty_bsdf_eval(const ty_bsdf* bsdf, ty_vec3 wi, float* pdf)
+{
+    return ty_matte_is_plain(bsdf) ? ty_matte_eval(bsdf, ty_dot(wi, bsdf->frame.n), pdf) : eval_any(bsdf, wi, pdf);
 }
 
 // Towards a direction in the frame; what is no part of the others is glossy.
@@ -89,7 +98,7 @@ static ty_bsdf_parts local_parts(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi)
         parts.f[0] = ty_surface_eval_diffuse(bsdf, wi, &parts.pdf[0]);
     else if (bsdf->kind == TY_BSDF_CDRF_LOCAL)
         parts.f[0] = ty_local_eval_diffuse(bsdf, wo, wi, &parts.pdf[0]);
-    else if (bsdf->kind == TY_BSDF_CDRF_EXIT)
+    else if (bsdf->kind == TY_BSDF_CDRF_EXIT || bsdf->kind == TY_BSDF_MATTE)
     {
         parts.f[0] = f;
         parts.pdf[0] = pdf;
@@ -134,7 +143,7 @@ static bool straighten(const ty_bsdf* bsdf, ty_vec3 wo, ty_bsdf_sample* out)
     return true;
 }
 
-bool ty_bsdf_sample_wi(const ty_bsdf* bsdf, float u_lobe, ty_vec2 u, ty_bsdf_sample* out)
+static __attribute__((noinline)) bool sample_any(const ty_bsdf* bsdf, float u_lobe, ty_vec2 u, ty_bsdf_sample* out)
 {
     ty_vec3 wo = ty_to_local(bsdf->frame, bsdf->wo);
     bool kept = false;
@@ -142,6 +151,9 @@ bool ty_bsdf_sample_wi(const ty_bsdf* bsdf, float u_lobe, ty_vec2 u, ty_bsdf_sam
     {
     case TY_BSDF_SURFACE:
         kept = ty_surface_sample(bsdf, wo, u_lobe, u, out);
+        break;
+    case TY_BSDF_MATTE:
+        kept = ty_matte_sample(bsdf, u, out);
         break;
     case TY_BSDF_CDRF_LOCAL:
         kept = ty_local_sample(bsdf, wo, u_lobe, u, out);
@@ -160,8 +172,19 @@ bool ty_bsdf_sample_wi(const ty_bsdf* bsdf, float u_lobe, ty_vec2 u, ty_bsdf_sam
     return kept && (!bsdf->bent || straighten(bsdf, wo, out));
 }
 
+bool ty_bsdf_sample_wi(const ty_bsdf* bsdf, float u_lobe, ty_vec2 u, ty_bsdf_sample* out)
+{
+    if (!ty_matte_is_plain(bsdf))
+        return sample_any(bsdf, u_lobe, u, out);
+    bool lit = ty_matte_sample(bsdf, u, out);
+    out->wi = ty_to_world(bsdf->frame, out->wi);
+    return lit;
+}
+
 ty_rgb ty_bsdf_albedo(const ty_bsdf* bsdf)
 {
+    if (bsdf->kind == TY_BSDF_MATTE)
+        return bsdf->color;
     return bsdf->kind == TY_BSDF_SURFACE ? ty_surface_albedo(bsdf) : ty_cdrf_albedo(bsdf);
 }
 
@@ -193,7 +216,7 @@ void ty_bsdf_spawn(const ty_bsdf* bsdf, ty_vec3 wi, float u, ty_ray* ray)
     // What leaves a convex body on its outer side cannot meet it again, the facets of its mesh apart.
     bool outwards = bsdf->kind == TY_BSDF_CDRF_LOCAL || ty_dot(wi, p->ns) > 0.0f;
     // From elsewhere, what leaves above the horizon of its triangle cannot either.
-    if ((bsdf->convex && outwards) || ty_dot(wi, p->ng) > p->horizon)
+    if ((p->convex && outwards) || ty_dot(wi, p->ng) > p->horizon)
     {
         ray->skip_object = p->object;
         ray->skip_instance = p->instance;

@@ -115,10 +115,13 @@ ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** ou
     ty_material* m = TY_ALLOC(ty_material, 1);
     m->model = TY_MODEL_SURFACE;
     m->surface = *def;
-    m->anisotropic = !is_zero(&def->specular_roughness_anisotropy);
     m->bent = has_map(&def->normal, &def->bump);
     m->matte = is_zero(&def->specular_weight) && is_zero(&def->base_metalness) && is_zero(&def->transmission_weight) &&
                is_zero(&def->coat_weight) && !def->thin_walled;
+    m->anisotropic = !m->matte && !is_zero(&def->specular_roughness_anisotropy);
+    m->base_is_constant = is_constant(&def->base_color);
+    m->base_color = ty_clamp_color(def->base_color.value);
+    m->emissive = !is_zero(&def->emission_luminance) && !is_zero(&def->emission_color);
     m->traits = surface_traits(def);
     make_surface_tables(m);
     *out = m;
@@ -181,15 +184,14 @@ bool ty_material_needs_depth(const ty_material* material)
 
 bool ty_material_is_emissive(const ty_material* material)
 {
-    const ty_surface_def* s = &material->surface;
-    return material->model == TY_MODEL_SURFACE && !is_zero(&s->emission_luminance) && !is_zero(&s->emission_color);
+    return material->emissive;
 }
 
 ty_rgb ty_material_emission(const ty_material* material, const ty_shading_context* context,
                             const ty_surface_point* point)
 {
     const ty_surface_def* s = &material->surface;
-    if (!ty_material_is_emissive(material))
+    if (!material->emissive)
         return ty_rgb_grey(0.0f);
     return ty_rgb_scale(ty_input_color(&s->emission_color, context, point),
                         ty_max(ty_input_float(&s->emission_luminance, context, point), 0.0f));
@@ -226,14 +228,6 @@ ty_transparency ty_material_transparency(const ty_material* material, const ty_s
     return t;
 }
 
-// Shading normals may turn away from a viewer who sees the triangle: bend them back until they face wo.
-ty_vec3 ty_facing_normal(ty_vec3 n, ty_vec3 wo)
-{
-    const float least = 1e-3f;
-    float c = ty_dot(n, wo);
-    return c >= least ? n : ty_normalize(ty_mad(n, wo, least - c));
-}
-
 void ty_material_prepare(const ty_material* material, const ty_shading_context* context, const ty_surface_point* point,
                          ty_vec3 wo, ty_bsdf* out)
 {
@@ -243,19 +237,16 @@ void ty_material_prepare(const ty_material* material, const ty_shading_context* 
 void ty_material_prepare_within(const ty_material* material, const ty_shading_context* context,
                                 const ty_surface_point* point, ty_vec3 wo, float outside, ty_bsdf* out)
 {
-    *out = (ty_bsdf){.material = material, .point = *point, .wo = wo, .outside = outside};
-    out->entering = ty_dot(wo, point->ng) > 0.0f;
-    if (material->bent)
-        ty_shading_frame_bend(material, context, out);
-    else
-        out->frame = ty_frame_from_normal(ty_facing_normal(out->entering ? point->ns : ty_neg(point->ns), wo));
-    if (material->anisotropic)
-        ty_shading_frame_turn(material, context, out);
-    if (context && context->world)
+    if (material->matte)
     {
-        uint32_t prototype = ty_world_prototype(context->world, point->object, point->instance);
-        out->convex = ty_world_topology(context->world, prototype)->convex;
+        if (point != &out->point)
+            out->point = *point;
+        out->wo = wo;
+        ty_matte_prepare(material, context, out);
+        return;
     }
+    *out = (ty_bsdf){.material = material, .point = *point, .wo = wo, .outside = outside};
+    ty_shading_frame_prepare(material, context, out);
     switch (material->model)
     {
     case TY_MODEL_SURFACE:

@@ -22,19 +22,48 @@ struct ty_material
     bool anisotropic;          // the frame follows the texture's u
     bool bent;                 // a normal or bump map
     bool matte;                // nothing but a diffuse base
+    bool emissive;
+    bool base_is_constant; // of `surface`: base_color is, and then it is this:
+    ty_rgb base_color;
     unsigned traits;           // ty_material_trait
     ty_loss_table* conductor;  // of the metal or sheet of `surface`, NULL where it has none or loses nothing
     ty_loss_table* dielectric; // of its clear boundary, likewise
     ty_poisson_table* poisson; // for `local` with the Poisson kernel
 };
 
-// out holds point, frame, wo, entering and convex already.
+static inline ty_rgb ty_clamp_color(ty_rgb c)
+{
+    return ty_rgb_make(ty_clamp(c.r, 0, 1), ty_clamp(c.g, 0, 1), ty_clamp(c.b, 0, 1));
+}
+
+// out holds point and wo already, and nothing else.
+void ty_matte_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
+// out holds point, frame, wo, entering and bent already; all else is zero.
 void ty_surface_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
 void ty_cdrf_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
 
-// n bent until it faces wo.
-ty_vec3 ty_facing_normal(ty_vec3 n, ty_vec3 wo);
+// Shading normals may turn away from a viewer who sees the triangle: bend them back until they face wo.
+static inline ty_vec3 ty_facing_normal(ty_vec3 n, ty_vec3 wo)
+{
+    const float least = 1e-3f;
+    float c = ty_dot(n, wo);
+    return c >= least ? n : ty_normalize(ty_mad(n, wo, least - c));
+}
 
 // The frame at the point: along the texture where highlights are stretched, bent by normal and bump maps.
 void ty_shading_frame_bend(const ty_material* material, const ty_shading_context* context, ty_bsdf* bsdf);
 void ty_shading_frame_turn(const ty_material* material, const ty_shading_context* context, ty_bsdf* bsdf);
+
+// Frame and side of a bsdf that holds point and wo.
+static inline void ty_shading_frame_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
+{
+    const ty_surface_point* p = &b->point;
+    b->entering = ty_dot(b->wo, p->ng) > 0.0f;
+    b->bent = material->bent;
+    if (material->bent)
+        ty_shading_frame_bend(material, context, b);
+    else
+        b->frame = ty_frame_from_normal(ty_facing_normal(b->entering ? p->ns : ty_neg(p->ns), b->wo));
+    if (material->anisotropic)
+        ty_shading_frame_turn(material, context, b);
+}

@@ -99,7 +99,6 @@ void ty_shading_frame_bend(const ty_material* material, const ty_shading_context
     if (bump->texture_index >= 0)
         n = bumped_normal(bump, context, &b->point, &t, n);
     b->frame = ty_frame_from_normal(ty_facing_normal(b->entering ? n : ty_neg(n), b->wo));
-    b->bent = true;
 }
 
 void ty_shading_frame_turn(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)

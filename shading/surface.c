@@ -5,11 +5,6 @@
 #include "microfacet.h"
 #include "surface_private.h"
 
-static ty_rgb clamp_color(ty_rgb c)
-{
-    return ty_rgb_make(ty_clamp(c.r, 0, 1), ty_clamp(c.g, 0, 1), ty_clamp(c.b, 0, 1));
-}
-
 static float unit_input(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)
 {
     return ty_clamp(ty_input_float(input, context, point), 0.0f, 1.0f);
@@ -89,7 +84,7 @@ static void prepare_transmission(const ty_surface_def* s, const ty_shading_conte
     if (b->transmission_weight <= 0.0f || b->metalness >= 1.0f)
         return;
     b->inside = !b->entering && !b->thin;
-    ty_rgb tint = clamp_color(ty_input_color(&s->transmission_color, context, p));
+    ty_rgb tint = ty_clamp_color(ty_input_color(&s->transmission_color, context, p));
     // Over a depth the tint is the medium's, not the boundary's.
     b->transmission = s->transmission_depth <= 0.0f || b->thin ? tint : ty_rgb_grey(1.0f);
 }
@@ -102,7 +97,7 @@ static void prepare_diffuse(const ty_surface_def* s, const ty_shading_context* c
     if (!b->thin)
         return;
     float weight = unit_input(&s->subsurface_weight, context, &b->point);
-    ty_rgb color = clamp_color(ty_input_color(&s->subsurface_color, context, &b->point));
+    ty_rgb color = ty_clamp_color(ty_input_color(&s->subsurface_color, context, &b->point));
     float through = 0.5f * (1.0f + s->subsurface_anisotropy);
     b->diffuse = ty_rgb_lerp(b->color, ty_rgb_scale(color, 1.0f - through), weight);
     b->diffuse_below = ty_rgb_scale(color, through * weight);
@@ -223,29 +218,16 @@ static void prepare_boundary(const ty_material* material, const ty_shading_conte
     prepare_loss(material, roughness, b);
 }
 
-// One lobe, chosen always.
-static void prepare_matte(ty_bsdf* b)
-{
-    b->diffuse = b->color;
-    b->layers_passed = 1.0f;
-    b->lobe_probability[TY_LOBE_DIFFUSE] = ty_rgb_is_black(b->color) ? 0.0f : 1.0f;
-}
-
 void ty_surface_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
 {
     const ty_surface_def* s = &material->surface;
     const ty_surface_point* p = &b->point;
     b->kind = TY_BSDF_SURFACE;
     b->thin = s->thin_walled;
-    b->color = clamp_color(ty_input_color(&s->base_color, context, p));
-    if (b->entering)
+    b->color = ty_clamp_color(ty_input_color(&s->base_color, context, p));
+    if (material->emissive && b->entering)
         b->emission = ty_material_emission(material, context, p);
-    if (material->matte)
-    {
-        prepare_matte(b);
-        return;
-    }
-    b->specular_tint = clamp_color(ty_input_color(&s->specular_color, context, p));
+    b->specular_tint = ty_clamp_color(ty_input_color(&s->specular_color, context, p));
     b->metalness = unit_input(&s->base_metalness, context, p);
     b->specular_weight = unit_input(&s->specular_weight, context, p);
     prepare_transmission(s, context, b);

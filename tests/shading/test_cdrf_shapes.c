@@ -201,7 +201,7 @@ static void test_furnace_of_a_torus(void** state)
             assert_near(furnace(&s, m, &p, ty_vec3_make(0, 1, 0), 30000), 1.0, e == TY_CDRF_LOCAL ? 0.006 : 1e-5);
             ty_bsdf b;
             ty_material_prepare(m, &s.context, &p, ty_vec3_make(0, 1, 0), &b);
-            assert_false(b.convex);
+            assert_false(b.point.convex);
             if (e == TY_CDRF_LOCAL)
                 check_sampling(&b, p.ns, 200000);
             ty_material_destroy(m);

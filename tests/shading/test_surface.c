@@ -449,6 +449,79 @@ static void test_bad_definitions(void** state)
     assert_non_null(strstr(error.text, "poisson"));
 }
 
+// The lean surface against the layered one whose layers reflect next to nothing.
+static void check_matte(const ty_bsdf* matte, const ty_bsdf* layered, ty_rng* rng)
+{
+    float u = ty_rng_float(rng), ux = ty_rng_float(rng), uy = ty_rng_float(rng), pdf, expected_pdf;
+    ty_vec3 wi = ty_sample_sphere((ty_vec2){ux, uy});
+    ty_rgb f = ty_bsdf_eval(matte, wi, &pdf), expected = ty_bsdf_eval(layered, wi, &expected_pdf);
+    assert_near(f.r, expected.r, 1e-6);
+    assert_near(f.b, expected.b, 1e-6);
+    assert_near(pdf, expected_pdf, 1e-6);
+    ty_bsdf_parts parts = ty_bsdf_eval_parts(matte, wi);
+    assert_true(parts.f[0].r == f.r && parts.pdf[0] == pdf);
+    assert_true(parts.pdf[1] + parts.pdf[2] == 0.0f && ty_rgb_is_black(ty_rgb_add(parts.f[1], parts.f[2])));
+    ty_bsdf_sample s, t;
+    bool lit = ty_bsdf_sample_wi(matte, u, (ty_vec2){ux, uy}, &s);
+    assert_int_equal(lit, ty_bsdf_sample_wi(layered, u, (ty_vec2){ux, uy}, &t));
+    if (!lit)
+        return;
+    assert_near(ty_length(ty_sub(s.wi, t.wi)), 0, 1e-6);
+    assert_near(ty_length(s.wi), 1, 1e-6);
+    assert_near(s.pdf, t.pdf, 1e-6);
+    assert_near(s.weight.r, t.weight.r, 1e-6);
+    assert_near(s.weight.b, t.weight.b, 1e-6);
+    assert_true(s.kind == t.kind && s.delta == t.delta && s.transmitted == t.transmitted);
+}
+
+static void test_matte_is_the_layered_surface(void** state)
+{
+    (void)state;
+    ty_rng rng = ty_rng_make((ty_seed){5}, 0, 0);
+    ty_surface_def d = white(0, 0.3f);
+    d.base_color = ty_input_make(ty_rgb_make(0.8f, 0.5f, 1.2f)); // clamped to 1
+    d.emission_luminance = ty_input_scalar(2);
+    ty_material* matte = surface(&d);
+    d.specular_weight = ty_input_scalar(1e-20f);
+    ty_material* layered = surface(&d);
+    for (int i = 0; i < 2000; i++)
+    {
+        ty_vec3 ng = ty_sample_sphere((ty_vec2){ty_rng_float(&rng), ty_rng_float(&rng)});
+        ty_vec3 wo = ty_sample_sphere((ty_vec2){ty_rng_float(&rng), ty_rng_float(&rng)});
+        ty_surface_point p = {.ng = ng, .ns = ty_normalize(ty_mad(ng, wo, -0.4f))};
+        ty_bsdf a, b;
+        memset(&a, 0xff, sizeof a); // nothing that preparation leaves out is read
+        a.point = b.point = p;
+        ty_material_prepare(matte, NULL, &a.point, wo, &a);
+        ty_material_prepare(layered, NULL, &b.point, wo, &b);
+        assert_int_equal(a.kind, TY_BSDF_MATTE);
+        assert_int_equal(b.kind, TY_BSDF_SURFACE);
+        assert_memory_equal(&a.point, &p, sizeof p);
+        assert_memory_equal(&b.point, &p, sizeof p);
+        assert_true(a.entering == b.entering && a.bent == b.bent && a.emission.r == b.emission.r);
+        assert_near(ty_bsdf_albedo(&a).g, ty_bsdf_albedo(&b).g, 1e-6);
+        assert_true(!ty_bsdf_is_delta(&a) && !ty_bsdf_is_delta(&b));
+        check_matte(&a, &b, &rng);
+    }
+    ty_material_destroy(matte);
+    ty_material_destroy(layered);
+}
+
+static void test_black_scatters_nothing(void** state)
+{
+    (void)state;
+    ty_surface_def d = white(0, 0);
+    d.base_color = ty_input_scalar(0);
+    ty_material* black = surface(&d);
+    ty_bsdf b = bsdf_at(black, 0.5);
+    ty_bsdf_sample s;
+    float pdf;
+    assert_true(ty_rgb_is_black(ty_bsdf_eval(&b, b.frame.n, &pdf)));
+    assert_true(ty_bsdf_is_delta(&b)); // no light is sampled for it
+    assert_false(ty_bsdf_sample_wi(&b, 0.5f, (ty_vec2){0.5f, 0.25f}, &s));
+    ty_material_destroy(black);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -456,6 +529,8 @@ int main(void)
         cmocka_unit_test(test_plastic_and_coat_sampling),
         cmocka_unit_test(test_rough_transmission_sampling),
         cmocka_unit_test(test_lambert_furnace_is_exact),
+        cmocka_unit_test(test_matte_is_the_layered_surface),
+        cmocka_unit_test(test_black_scatters_nothing),
         cmocka_unit_test(test_white_under_specular_keeps_energy),
         cmocka_unit_test(test_varying_roughness_uses_the_same_table),
         cmocka_unit_test(test_smooth_glass_is_fresnel),

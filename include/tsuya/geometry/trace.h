@@ -171,6 +171,7 @@ typedef struct ty_surface_point
     ty_vec3 footprint[2]; // half axes of what a lookup averages over, along the triangle, world; zero = the point alone
     float time;           // within the shutter
     float horizon;        // a ray whose direction has more than this of ng cannot meet the instance again; 1 = no such
+    bool convex;          // the instance is: rays that leave it cannot meet it again
 } ty_surface_point;
 
 void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point* out);

@@ -12,6 +12,7 @@ struct ty_shading_context;
 typedef enum ty_bsdf_kind
 {
     TY_BSDF_SURFACE,    // layered: coat over (metal | dielectric specular over diffuse | transmission)
+    TY_BSDF_MATTE,      // a surface that is nothing but Lambert
     TY_BSDF_CDRF,       // depth or probe, not yet resolved: call ty_bsdf_resolve
     TY_BSDF_CDRF_LOCAL, // kernel over the whole sphere at the point, plus coat
     TY_BSDF_CDRF_EXIT,  // resolved: Lambert with (1 - F) at the exit point
@@ -40,19 +41,18 @@ typedef struct ty_loss_row
 typedef struct ty_bsdf
 {
     ty_bsdf_kind kind;
+    bool entering; // wo is outside the surface
+    bool bent;     // the frame's normal is that of a map: directions on the wrong side of ng are mirrored in it
     const struct ty_material* material;
     ty_surface_point point; // where light is gathered; moves to the exit point on resolve
     ty_frame frame;         // shading frame there, n on wo's side (CDRF_EXIT: outward)
     ty_vec3 wo;
     ty_rgb emission; // leaving along wo
-    bool entering;   // wo is outside the surface
-    bool convex;     // the instance is convex: rays that leave it cannot meet it again
-    bool inside;     // surface: wo is within a transmitting body
-    bool thin;       // surface: a sheet
-    bool bent;       // the frame's normal is that of a map: directions on the wrong side of ng are mirrored in it
+    ty_rgb color;    // base color or C
 
-    // Parameters at the point, meaning by kind.
-    ty_rgb color;                  // base color or C
+    // Parameters at the point, meaning by kind. What follows is not set for MATTE.
+    bool inside;                   // surface: wo is within a transmitting body
+    bool thin;                     // surface: a sheet
     ty_rgb diffuse, diffuse_below; // surface: albedos of the diffuse base, reflected and (of sheets) transmitted
     ty_rgb specular_tint;          // specular color
     ty_rgb transmission;           // factor for one crossing

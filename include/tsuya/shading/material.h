@@ -134,7 +134,7 @@ ty_transparency ty_material_transparency(const ty_material* material, const ty_s
 #include <tsuya/shading/bsdf.h>
 
 // Prepares the lobes at a point seen along wo (unit, away from the surface). If the point is seen from behind, opaque
-// materials behave as from the front with the normal turned.
+// materials behave as from the front with the normal turned. point may be out's own.
 void ty_material_prepare(const ty_material* material, const ty_shading_context* context, const ty_surface_point* point,
                          ty_vec3 wo, ty_bsdf* out);
 // The same where not air but a medium of this refractive index is around the body.
