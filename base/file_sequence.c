@@ -144,3 +144,15 @@ int ty_frame_numbers_missing(const ty_frame_numbers* frames, int first, int last
     }
     return missing;
 }
+
+void ty_frame_numbers_text(const ty_frame_numbers* frames, char* text, size_t size)
+{
+    bool room = true;
+    text[0] = 0;
+    for (int i = 0, end; i < frames->count && room; i = end)
+    {
+        for (end = i + 1; end < frames->count && frames->numbers[end] == frames->numbers[end - 1] + 1;)
+            ++end;
+        room = append_range(text, size, frames->numbers[i], frames->numbers[end - 1]);
+    }
+}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `tsuya check`: every mistake of a scene, without rendering.
-#include "cli.h"
+#include "frames.h"
 #include <stdio.h>
 #include <tsuya/base/log.h>
 #include <tsuya/base/memory.h>
@@ -49,23 +49,38 @@ static ty_status run(const ty_arguments* arguments)
         return status;
     }
     scene_arguments.options.check_only = true;
+    ty_frame_list list = {0};
+    status =
+        ty_argument_has(arguments, "frames") ? ty_frame_list_read(arguments, &scene_arguments.options, &list) : TY_OK;
+    if (status != TY_OK)
+    {
+        ty_scene_arguments_term(&scene_arguments);
+        return status;
+    }
+    double first = list.count > 0 ? list.frames[0] : 0.0;
+    scene_arguments.options.frame = list.count > 0 ? &first : NULL;
+    scene_arguments.options.frames = list.frames;
+    scene_arguments.options.frame_count = list.count;
     ty_scene* scene = NULL;
     ty_error_list errors = {0};
     status = ty_scene_load(arguments->positional[0], &scene_arguments.options, &scene, &errors);
     status = report(arguments, scene, &errors, status);
     ty_scene_destroy(scene);
     ty_scene_arguments_term(&scene_arguments);
+    ty_frame_list_term(&list);
     return status;
 }
 
 static const ty_option options[] = {
+    {"frames", 'f', "LIST",
+     "that sequences and keys cover these, e.g. 1-24:2,40 (default: that sequences cover the timeline)"},
     TY_SCENE_OPTIONS,
     {"json", 0, NULL, "the mistakes as JSON on standard output"},
 };
 
 const ty_command ty_command_check = {
     "check",
-    "SCENE",
+    "SCENE [options]",
     "find every mistake of a scene without rendering it",
     "tsuya check scenes/rice_bowl",
     1,

@@ -137,6 +137,23 @@ ty_status ty_frame_list_parse(const char* text, int start, int end, ty_frame_lis
     return TY_OK;
 }
 
+ty_status ty_frame_list_read(const ty_arguments* arguments, const ty_scene_options* options, ty_frame_list* out)
+{
+    ty_error error;
+    const char* text = ty_argument_text(arguments, "frames", "");
+    ty_timeline_def timeline = {0};
+    if (strcmp(text, "all") == 0)
+    {
+        timeline = ty_scene_read_timeline(arguments->positional[0], options);
+        timeline.end = timeline.end < timeline.start ? timeline.start : timeline.end; // a mistake that loading tells
+    }
+    if (ty_frame_list_parse(text, timeline.start, timeline.end, out, &error) != TY_OK)
+    {
+        return ty_usage(arguments->command, "--frames: %s", error.text);
+    }
+    return TY_OK;
+}
+
 void ty_frame_list_term(ty_frame_list* list)
 {
     ty_free(list->frames);

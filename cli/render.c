@@ -81,22 +81,14 @@ static ty_status probe_outputs(const ty_render_job* job, ty_error* error)
     return ty_video_probe(job->video, error);
 }
 
-// The frames of --frames; `all` is known when the scene is.
-static ty_status read_list(ty_render_job* job, const ty_scene* scene)
+// The frames of --frames, if there is none yet.
+static ty_status read_list(ty_render_job* job, const ty_scene_options* options)
 {
-    ty_error error;
-    const char* text = ty_argument_text(job->arguments, "frames", "");
-    bool all = strcmp(text, "all") == 0;
-    if (!job->lists || job->list.count > 0 || (all && !scene))
+    if (!job->lists || job->list.count > 0)
     {
         return TY_OK;
     }
-    int start = scene ? scene->timeline.start : 0, end = scene ? scene->timeline.end : 0;
-    if (ty_frame_list_parse(text, start, end, &job->list, &error) != TY_OK)
-    {
-        return ty_usage(job->arguments->command, "--frames: %s", error.text);
-    }
-    return TY_OK;
+    return ty_frame_list_read(job->arguments, options, &job->list);
 }
 
 static ty_status check_pattern(const ty_render_job* job)
@@ -252,9 +244,7 @@ static ty_status render_scene(ty_render_job* job, ty_scene* scene, ty_workers* w
 {
     ty_error error = {0};
     bool dry = ty_argument_has(job->arguments, "dry-run");
-    ty_status status = read_list(job, scene);
-    status = status == TY_OK ? check_pattern(job) : status;
-    status = status == TY_OK ? ty_render_plan(job, scene) : status;
+    ty_status status = ty_render_plan(job, scene);
     set_names(job, job->list.count ? job->list.frames[0] : (int)floor(scene->frame + 0.5));
     if (status == TY_OK && dry)
     {
@@ -277,7 +267,7 @@ static ty_status prepare(ty_render_job* job, ty_scene_arguments* scene_arguments
     ty_error error;
     ty_status status = ty_render_progress(job->arguments);
     status = status == TY_OK ? read_outputs(job) : status;
-    status = status == TY_OK ? read_list(job, NULL) : status;
+    status = status == TY_OK ? read_list(job, &scene_arguments->options) : status;
     status = status == TY_OK ? check_pattern(job) : status;
     status = status == TY_OK ? ty_render_overrides(job->arguments, scene_arguments) : status;
     scene_arguments->options.check_only = ty_argument_has(job->arguments, "dry-run");
@@ -285,6 +275,8 @@ static ty_status prepare(ty_render_job* job, ty_scene_arguments* scene_arguments
     {
         job->first = job->list.frames[0];
         scene_arguments->options.frame = &job->first;
+        scene_arguments->options.frames = job->list.frames;
+        scene_arguments->options.frame_count = job->list.count;
     }
     if (status != TY_OK || scene_arguments->options.check_only)
     {

@@ -236,6 +236,10 @@ void ty_set_texture_times(ty_loader* loader);     // to the scene's seconds
 // itself.
 ty_mip_texture_def ty_sequence_timing(const ty_sequence_def* sequence);
 void ty_sequence_check(ty_loader* loader, const ty_sequence_def* sequence, ty_place place);
+// scene_coverage.c: what does not reach over the frames that will be asked for, or over the timeline where none are
+// named, is reported.
+void ty_check_sequence_covers(ty_loader* loader, const ty_mip_texture_def* timing, int frame_count, ty_place place);
+void ty_check_keys_cover(ty_loader* loader); // named frames alone
 void ty_mesh_sequence_read(ty_loader* loader, ty_asset* asset, const ty_mesh_asset_def* def, ty_node* pattern);
 void ty_mesh_sequence_load(ty_loader* loader, ty_asset* asset); // the mesh at the scene's seconds
 void ty_mesh_sequence_destroy(struct ty_mesh_sequence* sequence);

@@ -42,25 +42,6 @@ static bool find_files(ty_loader* loader, ty_mesh_sequence* s, const ty_sequence
     return count == 0;
 }
 
-static void check_times(ty_loader* loader, const ty_mesh_sequence* s, ty_place place)
-{
-    const ty_timeline_def* timeline = &loader->scene->timeline;
-    const int frames[2] = {timeline->start, timeline->end};
-    for (int i = 0; i < 2; ++i)
-    {
-        int shown[2];
-        float weight;
-        double seconds = (frames[i] - timeline->start) / (double)timeline->fps;
-        if (ty_sequence_at(&s->timing, s->count, seconds, shown, &weight))
-            continue;
-        ty_report(
-            loader->errors, place, TY_BAD_INPUT,
-            "frame %d of the timeline, at %g s, is outside of the sequence's %g to %g s: say loop, hold or mirror",
-            frames[i], seconds, (double)s->timing.start, (double)s->timing.start + s->count / (double)s->timing.fps);
-        return;
-    }
-}
-
 void ty_mesh_sequence_read(ty_loader* loader, ty_asset* asset, const ty_mesh_asset_def* def, ty_node* pattern)
 {
     struct ty_scene_resources* resources = loader->scene->resources;
@@ -74,7 +55,7 @@ void ty_mesh_sequence_read(ty_loader* loader, ty_asset* asset, const ty_mesh_ass
     asset->path = path;
     if (!find_files(loader, s, &def->sequence, asset->place))
         return;
-    check_times(loader, s, asset->place);
+    ty_check_sequence_covers(loader, &s->timing, s->count, asset->place);
     asset->sequence = resources->sequences[resources->sequence_count++] = s;
 }
 

@@ -67,7 +67,8 @@ static void set_time(ty_loader* loader, double frame)
     if (scene->render.animate_seed)
         scene->render.seed.value = ty_rng_make(loader->seed, bits, 0).key;
     for (int i = 0; i < loader->timeline.entry_count; ++i)
-        ty_timeline_evaluate(&loader->timeline, i, (ty_moment){frame, 0.0}, loader->errors);
+        ty_timeline_evaluate(&loader->timeline, i, (ty_moment){frame, 0.0},
+                             loader->options->frame_count > 0 ? NULL : loader->errors); // else told for all at once
 }
 
 void ty_frame_begin(ty_loader* loader)
@@ -78,6 +79,7 @@ void ty_frame_begin(ty_loader* loader)
     ty_timeline_collect(&loader->timeline, &loader->tree, &loader->reader, loader->root);
     if (loader->frame_node || loader->timeline.track_count || ty_node_get(loader->root, "timeline"))
         tell_frame(loader);
+    ty_check_keys_cover(loader);
     set_time(loader, loader->scene->frame);
 }
 

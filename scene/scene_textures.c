@@ -96,55 +96,28 @@ int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data, i
     return texture.def.path ? index_of(loader, &texture) : -1;
 }
 
-// Whether the frames that the timeline shows are there. A sequence that a recipe makes later is as long as it says.
-static void check_time(ty_loader* loader, const ty_surface_texture* texture, int frame_count)
-{
-    const ty_timeline_def* timeline = &loader->scene->timeline;
-    const int frames[2] = {timeline->start, timeline->end};
-    for (int i = 0; i < 2; ++i)
-    {
-        int shown[2];
-        float weight;
-        double seconds = (frames[i] - timeline->start) / (double)timeline->fps;
-        if (ty_sequence_at(&texture->def, frame_count, seconds, shown, &weight))
-            continue;
-        ty_report(
-            loader->errors, texture->place, TY_BAD_INPUT,
-            "frame %d of the timeline, at %g s, is outside of the sequence's %g to %g s: say loop, hold or mirror",
-            frames[i], seconds, (double)texture->def.start,
-            (double)texture->def.start + frame_count / (double)texture->def.fps);
-        return;
-    }
-}
-
-static void check_texture(ty_loader* loader, const ty_surface_texture* entry, const ty_mip_texture* texture)
-{
-    ty_error error;
-    if (ty_mip_texture_verify(texture, &error) != TY_OK)
-        ty_report_error(loader->errors, entry->place, "texture", &error);
-    else if (entry->asset >= 0)
-        check_time(loader, entry, ty_mip_texture_frame_count(texture));
-}
-
 static void load_texture(ty_loader* loader, int index)
 {
     ty_scene* scene = loader->scene;
     ty_surface_texture* entry = &loader->surface_textures[index];
     ty_mip_texture** texture = &scene->surface_textures[index];
     const ty_asset* asset = entry->asset >= 0 ? &loader->assets[entry->asset] : NULL;
+    bool checks = loader->options->check_only;
     ty_error error;
     if (asset && asset->kind == TY_ASSET_RECIPE)
         entry->def.path = asset->frames;
     if (!entry->def.path)
     {
-        if (asset && loader->options->check_only)
-            check_time(loader, entry, asset->recipe.generator->frame_count(asset->recipe.def));
+        if (asset && checks) // it will be as long as the recipe says
+            ty_check_sequence_covers(loader, &entry->def, asset->recipe.generator->frame_count(asset->recipe.def),
+                                     entry->place);
         return; // not made: only a check, or its own mistake is reported
     }
-    if (ty_mip_texture_create(scene->texture_cache, &entry->def, texture, &error) != TY_OK)
+    if (ty_mip_texture_create(scene->texture_cache, &entry->def, texture, &error) != TY_OK ||
+        (checks && ty_mip_texture_verify(*texture, &error) != TY_OK))
         ty_report_error(loader->errors, entry->place, "texture", &error);
-    else if (loader->options->check_only)
-        check_texture(loader, entry, *texture);
+    else if (asset && (checks || loader->options->frame_count > 0))
+        ty_check_sequence_covers(loader, &entry->def, ty_mip_texture_frame_count(*texture), entry->place);
 }
 
 void ty_set_texture_times(ty_loader* loader)

@@ -93,11 +93,19 @@ double ty_track_value(const ty_track* track, int component, ty_moment moment)
     return between(track, low, component, (time - track->times[low]) / (track->times[high] - track->times[low]));
 }
 
+bool ty_track_covers(const ty_track* track, double frame)
+{
+    ty_outside outside = frame < track->times[0]                      ? track->before
+                         : frame > track->times[track->key_count - 1] ? track->after
+                                                                      : TY_OUTSIDE_HOLD;
+    return outside != TY_OUTSIDE_ERROR;
+}
+
 static void check_outside(const ty_track* track, ty_moment moment, ty_error_list* errors)
 {
     double at = moment.frame, first = track->times[0], last = track->times[track->key_count - 1];
-    bool early = at < first && track->before == TY_OUTSIDE_ERROR, late = at > last && track->after == TY_OUTSIDE_ERROR;
-    if (early || late)
+    bool early = at < first;
+    if (!ty_track_covers(track, at))
         ty_report(errors, track->keyed->place, TY_BAD_INPUT, "frame %.9g is %s key, frame %.9g (%s: error)", at,
                   early ? "ahead of the first" : "after the last", early ? first : last, early ? "before" : "after");
 }

@@ -80,6 +80,7 @@ void ty_timeline_collect(ty_timeline* timeline, ty_tree* tree, ty_reader* reader
 // Gives the tracks of an entry their values; marks it as changed when any is another than before. errors NULL: what is
 // outside where that is an error is not told.
 void ty_timeline_evaluate(ty_timeline* timeline, int entry, ty_moment moment, ty_error_list* errors);
+bool ty_track_covers(const ty_track* track, double frame); // it is not outside where that is an error
 // One component of a track at a moment; within its keys, so neither ERROR nor a report.
 double ty_track_value(const ty_track* track, int component, ty_moment moment);
 // Puts what is written back in place of the values, or the values again.

@@ -95,12 +95,26 @@ static void test_missing_frames_are_listed(void** state)
     assert_string_equal(narrow, "4, ...");
 }
 
+static void test_numbers_as_a_text(void** state)
+{
+    (void)state;
+    int numbers[] = {-3, 1, 2, 3, 5, 10, 15, 16};
+    char text[64], narrow[11];
+    ty_frame_numbers_text(&(ty_frame_numbers){numbers, 8}, text, sizeof text);
+    assert_string_equal(text, "-3, 1-3, 5, 10, 15-16");
+    ty_frame_numbers_text(&(ty_frame_numbers){numbers, 8}, narrow, sizeof narrow);
+    assert_string_equal(narrow, "-3, ...");
+    ty_frame_numbers_text(&(ty_frame_numbers){numbers, 0}, text, sizeof text);
+    assert_string_equal(text, "");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_frames_are_found_in_order, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_no_frames_is_an_error, folder_make, folder_remove),
         cmocka_unit_test(test_missing_frames_are_listed),
+        cmocka_unit_test(test_numbers_as_a_text),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -94,12 +94,38 @@ expect 2 "$tsuya" render scene.yaml -o g.exr --video g.mp4
 says "--video needs frames"
 expect 2 "$tsuya" render scene.yaml --frames 1-2 -o g.#.exr --video g.avi
 says ".mp4"
-expect 3 "$tsuya" render scene.yaml --frames 1-2 -o g.#.exr --set 'camera.vfov={ keys: { 1: 20 }, after: error }'
-says "frame 2 is after the last key"
-[ -s g.1.exr ] || fail "the frame before the mistake is gone"
-rm g.1.exr
-expect 3 "$tsuya" render scene.yaml --frames 1-2 -o g.#.exr --dry-run --set 'camera.vfov={ keys: { 1: 20 }, after: error }'
-absent g.1.exr
+for how in 'render --dry-run -o g.#.exr' 'render -o g.#.exr' check; do
+    expect 3 "$tsuya" $how scene.yaml --frames 1,3-7:2,8,9 --set 'camera.vfov={ keys: { 1: 20, 4: 20 }, after: error }'
+    says "4 of the 6 frames are outside of the keys, which go from 1 to 4: 5, 7-9"
+    absent g.1.exr
+done
+expect 3 "$tsuya" render scene.yaml --frames all -o g.#.exr --set timeline.start=9
+says "'end' is 4"
+
+# Sequences that end before the frames asked for: with all of them, before the first is rendered.
+mkdir -p fill
+for i in 1 2 3; do cp f.0001.png fill/$i.png; done
+sequence=(--set 'assets.fill={ frames: "fill/#.png", fps: 24 }' --set 'materials.grey.base_color={ texture: fill }' --set film.size=[16,16] --set render.samples=1)
+for how in 'render --dry-run -o g.#.exr' 'render -o g.#.exr' check; do
+    expect 3 "$tsuya" $how scene.yaml --frames 0,2-6:2,7 "${sequence[@]}"
+    says "4 of the 5 frames are outside of the sequence's 0 to 0.125 s: 0, 4, 6-7; say loop, hold or mirror"
+    absent g.2.exr
+    expect 0 "$tsuya" $how scene.yaml --frames 2-3 "${sequence[@]}"
+    rm -f g.2.exr g.3.exr
+done
+expect 3 "$tsuya" render scene.yaml --frames all -o g.#.exr "${sequence[@]}"
+says "1 of the 4 frames are outside of the sequence's 0 to 0.125 s: 4;"
+expect 3 "$tsuya" check scene.yaml "${sequence[@]}"
+says "frame 4 of the timeline"
+expect 2 "$tsuya" check scene.yaml --frames 3-1
+says "--frames"
+
+# What only a later frame shows leaves those before it.
+echo 'no picture' >fill/3.png
+expect 4 "$tsuya" render scene.yaml --frames 2-3 -o g.#.exr --progress none "${sequence[@]}"
+[ -s g.2.exr ] || fail "the frame before the mistake is gone"
+absent g.3.exr
+rm g.2.exr
 expect 0 "$tsuya" render scene.yaml --frames all --dry-run
 prints "4 frames: 1 to 4"
 

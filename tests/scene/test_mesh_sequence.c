@@ -160,12 +160,32 @@ static void wrong_files_are_named(void** state)
                       3, 22, "only one of");
 }
 
+// Frames that are named stand in place of the timeline: what does not cover them is known before the first is shown.
+static void named_frames_are_covered(void** state)
+{
+    (void)state;
+    write_frames();
+    static const int inside[] = {1, 3}, outside[] = {2, 3, 4, 5, 9};
+    double first = 1.0;
+    ty_scene_options options = {.frame = &first, .frames = inside, .frame_count = 2};
+    fixture_write("scene.yaml", "tsuya: 1\ntimeline: { end: 4 }\nassets: { a: { mesh: m.####.ply } }\n");
+    assert_int_equal(fixture_load(&options), TY_OK);
+    first = 2.0;
+    options.frames = outside;
+    options.frame_count = 5;
+    assert_int_equal(fixture_load(&options), TY_BAD_INPUT);
+    assert_true(
+        fixture_has("scene.yaml", 3, 22, "3 of the 5 frames are outside of the sequence's 0 to 0.125 s: 4-5, 9;"));
+    assert_int_equal(fixture_errors.count, 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        FIXTURE_TEST(files_follow_the_time),  FIXTURE_TEST(only_what_changes_is_rebuilt),
-        FIXTURE_TEST(frames_do_not_remember), FIXTURE_TEST(focus_follows_the_mesh),
-        FIXTURE_TEST(attributes_change_too),  FIXTURE_TEST(wrong_files_are_named),
+        FIXTURE_TEST(files_follow_the_time),    FIXTURE_TEST(only_what_changes_is_rebuilt),
+        FIXTURE_TEST(frames_do_not_remember),   FIXTURE_TEST(focus_follows_the_mesh),
+        FIXTURE_TEST(attributes_change_too),    FIXTURE_TEST(wrong_files_are_named),
+        FIXTURE_TEST(named_frames_are_covered),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -76,7 +76,9 @@ typedef struct ty_frame_numbers
 // The frames of a pattern that are there as regular files. None at all (or no such folder) is TY_BAD_FILE.
 TY_CHECKED ty_status ty_frame_numbers_find(const char* pattern, ty_frame_numbers* out, ty_error* error);
 void ty_frame_numbers_term(ty_frame_numbers* frames);
-// How many from first to last are not there, and which: "7, 12-14", ending in "..." when size does not suffice.
+// Their numbers as "7, 12-14", ending in "..." when size does not suffice.
+void ty_frame_numbers_text(const ty_frame_numbers* frames, char* text, size_t size);
+// How many from first to last are not there, and which, in such a text.
 int ty_frame_numbers_missing(const ty_frame_numbers* frames, int first, int last, char* text, size_t size);
 
 // Runs fn in a child process with limits: for importers of foreign code. What fn writes to output_fd becomes *output

@@ -283,6 +283,8 @@ typedef struct ty_scene_options
     bool sandbox;             // no path outside the scene's folder
     bool quick;               // half size and 16 samples, as overrides before all others
     const double* frame;      // to begin with; NULL = as the file says
+    const int* frames;        // [frame_count] that will be asked for, ascending: a sequence or key that does not
+    int frame_count;          // cover them is a mistake. 0 = not known
     bool check_only;          // read and verify everything, but make no asset and build no tree
     ty_trace_path trace_path;
     ty_workers* workers; // for generators; NULL = the caller
