@@ -76,21 +76,27 @@ static ty_trace_context make_context(const ty_world* world, const ty_ray* ray)
     return context;
 }
 
-static ty_wide_query wide_query(const ty_world* world, const ty_ray* ray, const struct RTCRay* r)
+static ty_wide_query wide_query(const ty_world* world, const ty_trace_wide* wide, const ty_ray* ray,
+                                const struct RTCRay* r)
 {
     bool skips = ray->skip_object != TY_NONE && ray->skip_instance != TY_NONE;
+    bool whole = ray->skip_distance >= TY_FLOAT_MAX;
+    uint32_t skipped = skips ? world->objects[ray->skip_object].first + ray->skip_instance : TY_NONE;
     return (ty_wide_query){.origin = {r->org_x, r->org_y, r->org_z},
                            .direction = {r->dir_x, r->dir_y, r->dir_z},
                            .t_min = r->tnear,
                            .t_max = r->tfar,
                            .ray = ray,
-                           .skip = skips ? world->objects[ray->skip_object].first + ray->skip_instance : TY_NONE};
+                           .pass = whole ? skipped : TY_NONE,
+                           .skip = whole ? TY_NONE : skipped,
+                           .meets_all = (whole || !skips) && (ray->mask & wide->common_mask) != 0 &&
+                                        !(wide->has_subsurface && (ray->flags & TY_RAY_FRONT_ONLY))};
 }
 
 void ty_trace_wide_intersect(const ty_world* world, const ty_trace_wide* wide, const ty_ray* ray,
                              struct RTCRayHit* ray_hit)
 {
-    ty_wide_query q = wide_query(world, ray, &ray_hit->ray);
+    ty_wide_query q = wide_query(world, wide, ray, &ray_hit->ray);
     bool found =
         world->use_avx512 ? ty_wide_intersect_avx512(world, wide, &q) : ty_wide_intersect_base(world, wide, &q);
     if (!found)
@@ -107,7 +113,7 @@ void ty_trace_wide_intersect(const ty_world* world, const ty_trace_wide* wide, c
 bool ty_trace_wide_occluded(const ty_world* world, const ty_trace_wide* wide, const ty_ray* ray,
                             const struct RTCRay* embree_ray)
 {
-    ty_wide_query q = wide_query(world, ray, embree_ray);
+    ty_wide_query q = wide_query(world, wide, ray, embree_ray);
     return world->use_avx512 ? ty_wide_occluded_avx512(world, wide, &q) : ty_wide_occluded_base(world, wide, &q);
 }
 

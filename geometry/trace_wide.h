@@ -37,7 +37,9 @@ typedef struct ty_wide_query
     ty_vec3 origin, direction;
     float t_min, t_max; // t_max shrinks to the nearest hit
     const ty_ray* ray;  // flags, mask and skips
-    uint32_t skip;      // the world's number of the ray's instance to skip, or TY_NONE
+    uint32_t pass;      // the world's number of the instance that the ray skips altogether, or TY_NONE
+    uint32_t skip;      // of one that it skips up to skip_distance, or TY_NONE
+    bool meets_all;     // every other instance, from both sides: no need to look at any
     float u, v;         // of the hit
     uint32_t triangle, instance;
 } ty_wide_query;

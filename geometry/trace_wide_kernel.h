@@ -45,7 +45,7 @@ static inline uint32_t meet_spheres(const ty_wide_leaf* leaf, const ty_wide_quer
     ty_f16 far = ty_f16_add(ty_f16_add(ty_f16_abs(o[0]), ty_f16_abs(o[1])), ty_f16_abs(o[2]));
     ty_f16 limit = ty_f16_fma(ty_f16_set(2e-6f), far, ty_f16_set(1.0f + 2e-6f));
     ty_f16 rest = ty_f16_fms(limit, length_sqr, moment_sqr);
-    uint32_t mask = ty_f16_lt(ty_f16_set(0.0f), rest);
+    uint32_t mask = ty_f16_lt(ty_f16_set(0.0f), rest) & ~ty_u32_equal16(leaf->instance, q->pass);
     if (!mask)
         return 0;
     ty_f16 inverse = ty_f16_div(one, length_sqr);
@@ -54,8 +54,6 @@ static inline uint32_t meet_spheres(const ty_wide_leaf* leaf, const ty_wide_quer
     ty_f16 half = ty_f16_fma(ty_f16_set(2e-6f), ty_f16_abs(middle), ty_f16_mul(ty_f16_sqrt(rest), inverse));
     ty_f16 entry = ty_f16_sub(middle, half);
     mask &= ty_f16_le(ty_f16_set(q->t_min), ty_f16_add(middle, half)) & ty_f16_le(entry, ty_f16_set(q->t_max));
-    if (!mask)
-        return 0;
     ty_f16_store(hits->entry, entry);
     ty_f16_store(hits->nearest_sqr, ty_f16_mul(moment_sqr, inverse));
     ty_f16_store(hits->middle, middle);
@@ -75,13 +73,13 @@ static inline bool may_visit(const ty_world* world, const ty_trace_wide* wide, c
                              uint32_t instance, bool outside, ty_trace_context* context, RTCFilterFunctionN* filter)
 {
     *filter = NULL;
+    if (q->meets_all)
+        return true;
     bool skip = instance == q->skip, all_see = (q->ray->mask & wide->common_mask) != 0;
     // What comes from outside a closed surface meets its front first.
     bool one_sided = wide->has_subsurface && (q->ray->flags & TY_RAY_FRONT_ONLY) && !outside;
     if (!skip && all_see && !one_sided)
         return true;
-    if (skip && q->ray->skip_distance >= TY_FLOAT_MAX)
-        return false;
     const ty_trace_object* object = ty_trace_object_of(world, instance);
     if (!(q->ray->mask & object->mask))
         return false;

@@ -88,6 +88,14 @@ static void operations_are_plain_arithmetic(void** state)
         }
         assert_int_equal(ty_f16_le(va, vb), le);
         assert_int_equal(ty_f16_lt(va, vb), lt);
+        _Alignas(64) uint32_t numbers[TY_LANES];
+        uint32_t equal = 0;
+        for (int i = 0; i < TY_LANES; i++)
+        {
+            numbers[i] = 0xfffffffcu + (uint32_t)(ty_rng_float(&rng) * 8.0f);
+            equal |= (uint32_t)(numbers[i] == 0xffffffffu) << i;
+        }
+        assert_int_equal(ty_u32_equal16(numbers, 0xffffffffu), equal);
     }
 }
 

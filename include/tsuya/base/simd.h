@@ -81,6 +81,11 @@ static inline uint32_t ty_f16_lt(ty_f16 a, ty_f16 b)
 {
     return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
 }
+// Where the integers are the value.
+static inline uint32_t ty_u32_equal16(const uint32_t* aligned, uint32_t value)
+{
+    return _mm512_cmpeq_epi32_mask(_mm512_load_si512(aligned), _mm512_set1_epi32((int)value));
+}
 
 #elif defined(__AVX2__) && defined(__FMA__) && !defined(TY_SIMD_PORTABLE)
 #include <immintrin.h>
@@ -157,6 +162,13 @@ static inline uint32_t ty_f16_lt(ty_f16 a, ty_f16 b)
 {
     uint32_t low = (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a.low, b.low, _CMP_LT_OQ));
     return low | (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a.high, b.high, _CMP_LT_OQ)) << 8;
+}
+static inline uint32_t ty_u32_equal16(const uint32_t* aligned, uint32_t value)
+{
+    const __m256i *at = (const __m256i*)(const void*)aligned, all = _mm256_set1_epi32((int)value);
+    __m256 low = _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_load_si256(at), all));
+    __m256 high = _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_load_si256(at + 1), all));
+    return (uint32_t)_mm256_movemask_ps(low) | (uint32_t)_mm256_movemask_ps(high) << 8;
 }
 
 #else
@@ -241,6 +253,13 @@ static inline uint32_t ty_f16_lt(ty_f16 a, ty_f16 b)
     uint32_t mask = 0;
     for (int i = 0; i < TY_LANES; i++)
         mask |= (uint32_t)(a.lane[i] < b.lane[i]) << i;
+    return mask;
+}
+static inline uint32_t ty_u32_equal16(const uint32_t* aligned, uint32_t value)
+{
+    uint32_t mask = 0;
+    for (int i = 0; i < TY_LANES; i++)
+        mask |= (uint32_t)(aligned[i] == value) << i;
     return mask;
 }
 #endif
