@@ -10,12 +10,13 @@ static unsigned visible_to(const ty_light_def* light)
            (def->glossy ? TY_MASK_GLOSSY : 0u) | (def->transmission ? TY_MASK_TRANSMISSION : 0u);
 }
 
-static void light_init(ty_light* light, const ty_light_def* def, const ty_texture* image)
+static void light_init(ty_light* light, const ty_light_def* def, const ty_texture* image,
+                       const ty_environment_table* table)
 {
     switch (light->kind)
     {
     case TY_LIGHT_ENVIRONMENT:
-        ty_light_environment_init(light, def, image);
+        ty_light_environment_init(light, def, image, table);
         break;
     case TY_LIGHT_RECTANGLE:
         ty_light_rectangle_init(light, def);
@@ -59,7 +60,8 @@ static void add_lights(ty_light_set* set, int source, bool grouped)
     if (light->kind == TY_LIGHT_SKY)
         ty_light_sky_init(light, light + 1, def);
     else
-        light_init(light, def, scene->light_images ? scene->light_images[source] : NULL);
+        light_init(light, def, scene->light_images ? scene->light_images[source] : NULL,
+                   scene->light_tables ? scene->light_tables[source] : NULL);
 }
 
 // One selection for each set of lights that lights some object.
@@ -99,8 +101,6 @@ void ty_light_set_init(ty_light_set* set, const ty_scene* scene, bool grouped)
 
 void ty_light_set_term(ty_light_set* set)
 {
-    for (int i = 0; i < set->light_count; ++i)
-        ty_distribution_destroy(set->lights[i].distribution);
     for (int i = 0; i < set->selection_count; ++i)
         ty_light_selection_term(&set->selections[i]);
     ty_light_meshes_term(set);

@@ -32,7 +32,7 @@ typedef struct ty_light
     float fade;                    // spot: 1 / (cosine of where the fade begins - cos_outer)
     float image_mean;              // luminance of an environment's image over the sphere
     const ty_texture* image;       // of an environment or spot, NULL = none
-    ty_distribution* distribution; // environment: over (azimuth, angle from above), owned; NULL = left to the rays
+    ty_distribution* distribution; // environment: borrowed; NULL = left to the rays
 } ty_light;
 
 // An instance whose material emits.
@@ -169,7 +169,9 @@ static inline bool ty_light_is_shape(const ty_light* light)
 
 // --- one file each; those with a density can be met by a ray ---
 
-void ty_light_environment_init(ty_light* light, const ty_light_def* def, const ty_texture* image);
+// table: of the image, NULL where that is.
+void ty_light_environment_init(ty_light* light, const ty_light_def* def, const ty_texture* image,
+                               const ty_environment_table* table);
 ty_rgb ty_light_environment_radiance(const ty_light* light, ty_vec3 direction);
 float ty_light_environment_mean(const ty_light* light); // mean luminance over all directions
 bool ty_light_environment_sample(const ty_light* light, ty_vec2 u, ty_light_sample* out);

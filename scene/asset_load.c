@@ -9,6 +9,26 @@
 #define CURVATURE_SMOOTHING 2
 #define CHECK_DIVISIONS 16 // a shape made only to see whether its sizes are possible
 
+// Once for all frames: whatever else of a light is keyed, its image is not.
+static void make_environment_tables(ty_loader* loader)
+{
+    ty_scene* scene = loader->scene;
+    scene->environment_tables = TY_ARENA_ALLOC(loader->arena, ty_environment_table, scene->texture_count);
+    scene->light_tables = TY_ARENA_ALLOC(loader->arena, const ty_environment_table*, scene->light_count);
+    bool* made = TY_ALLOC(bool, scene->texture_count);
+    for (int i = 0; i < scene->light_count; ++i)
+    {
+        int image = loader->light_textures[i];
+        if (image < 0 || !scene->textures[image] || scene->lights[i].kind != TY_LIGHT_ENVIRONMENT)
+            continue;
+        if (!made[image])
+            ty_environment_table_init(&scene->environment_tables[image], scene->textures[image]);
+        made[image] = true;
+        scene->light_tables[i] = &scene->environment_tables[image];
+    }
+    ty_free(made);
+}
+
 void ty_load_textures(ty_loader* loader)
 {
     ty_scene* scene = loader->scene;
@@ -24,6 +44,8 @@ void ty_load_textures(ty_loader* loader)
     for (int i = 0; i < scene->light_count; ++i)
         if (loader->light_textures[i] >= 0)
             scene->light_images[i] = scene->textures[loader->light_textures[i]];
+    if (!loader->options->check_only)
+        make_environment_tables(loader);
 }
 
 // Vertex colours to ACEScg, as textures are.

@@ -212,6 +212,8 @@ void ty_scene_destroy(ty_scene* scene)
     ty_world_destroy(scene->world);
     for (int i = 0; scene->textures && i < scene->texture_count; ++i)
         ty_texture_destroy(scene->textures[i]);
+    for (int i = 0; scene->environment_tables && i < scene->texture_count; ++i)
+        ty_environment_table_term(&scene->environment_tables[i]);
     for (int i = 0; scene->surface_textures && i < scene->surface_texture_count; ++i)
         ty_mip_texture_destroy(scene->surface_textures[i]);
     ty_mip_cache_destroy(scene->texture_cache);

@@ -153,6 +153,9 @@ static void images_are_shared_and_converted(void** state)
     assert_non_null(s->light_images[0]);
     assert_null(s->light_images[1]);
     fixture_near(ty_texture_texel(s->light_images[0], 1, 1).g, 7.0f, 1e-3f);
+    assert_non_null(s->light_tables[0]);
+    assert_null(s->light_tables[1]);
+    assert_true(s->light_tables[0]->mean > 0.0f);
     // 8 bit, sRGB encoded .25 is linear .0509
     const ty_vec2 corner = {0.01f, 0.99f}, none = {0.0f, 0.0f};
     fixture_near(ty_mip_texture_sample(s->shading.textures[0], corner, none, none).rgb.g, 0.0509f, 1e-3f);

@@ -8,6 +8,7 @@
 #include <tsuya/image/color.h>
 #include <tsuya/image/mip_texture.h>
 #include <tsuya/image/texture.h>
+#include <tsuya/shading/environment_table.h>
 #include <tsuya/shading/material.h>
 
 typedef enum ty_filter_kind
@@ -251,7 +252,9 @@ typedef struct ty_scene
     int light_group_count;     // at most TY_LIGHT_GROUPS
     const bool** light_links;  // [light_link_count] -> [light_count + object_count], lights before emitting objects
     int light_link_count;      // the first is NULL: all of them
-    ty_texture** textures;     // that light_images point to
+    const ty_environment_table** light_tables; // [light_count], NULL where no environment shows an image
+    ty_environment_table* environment_tables;  // [texture_count], empty where no environment shows the image
+    ty_texture** textures;                     // that light_images point to
     int texture_count;
     ty_mip_cache* texture_cache;       // NULL when no material has textures
     ty_mip_texture** surface_textures; // of materials, at this frame
