@@ -76,16 +76,15 @@ static ty_trace_context make_context(const ty_world* world, const ty_ray* ray)
     return context;
 }
 
-static ty_wide_query wide_query(const ty_world* world, const ty_trace_wide* wide, const ty_ray* ray,
-                                const struct RTCRay* r)
+static ty_wide_query wide_query(const ty_world* world, const ty_trace_wide* wide, const ty_ray* ray)
 {
     bool skips = ray->skip_object != TY_NONE && ray->skip_instance != TY_NONE;
     bool whole = ray->skip_distance >= TY_FLOAT_MAX;
     uint32_t skipped = skips ? world->objects[ray->skip_object].first + ray->skip_instance : TY_NONE;
-    return (ty_wide_query){.origin = {r->org_x, r->org_y, r->org_z},
-                           .direction = {r->dir_x, r->dir_y, r->dir_z},
-                           .t_min = r->tnear,
-                           .t_max = r->tfar,
+    return (ty_wide_query){.origin = ray->origin,
+                           .direction = ray->direction,
+                           .t_min = ty_max(ray->t_min, 0.0f),
+                           .t_max = ray->t_max,
                            .ray = ray,
                            .pass = whole ? skipped : TY_NONE,
                            .skip = whole ? TY_NONE : skipped,
@@ -93,13 +92,33 @@ static ty_wide_query wide_query(const ty_world* world, const ty_trace_wide* wide
                                         !(wide->has_subsurface && (ray->flags & TY_RAY_FRONT_ONLY))};
 }
 
+// The same for a ray of another space.
+static ty_wide_query moved_query(const ty_world* world, const ty_trace_wide* wide, const ty_ray* ray,
+                                 const struct RTCRay* r)
+{
+    ty_wide_query q = wide_query(world, wide, ray);
+    q.origin = ty_vec3_make(r->org_x, r->org_y, r->org_z);
+    q.direction = ty_vec3_make(r->dir_x, r->dir_y, r->dir_z);
+    q.t_min = r->tnear;
+    q.t_max = r->tfar;
+    return q;
+}
+
+static bool intersect_wide(const ty_world* world, const ty_trace_wide* wide, ty_wide_query* q)
+{
+    return world->use_avx512 ? ty_wide_intersect_avx512(world, wide, q) : ty_wide_intersect_base(world, wide, q);
+}
+
+static bool occluded_wide(const ty_world* world, const ty_trace_wide* wide, const ty_wide_query* q)
+{
+    return world->use_avx512 ? ty_wide_occluded_avx512(world, wide, q) : ty_wide_occluded_base(world, wide, q);
+}
+
 void ty_trace_wide_intersect(const ty_world* world, const ty_trace_wide* wide, const ty_ray* ray,
                              struct RTCRayHit* ray_hit)
 {
-    ty_wide_query q = wide_query(world, wide, ray, &ray_hit->ray);
-    bool found =
-        world->use_avx512 ? ty_wide_intersect_avx512(world, wide, &q) : ty_wide_intersect_base(world, wide, &q);
-    if (!found)
+    ty_wide_query q = moved_query(world, wide, ray, &ray_hit->ray);
+    if (!intersect_wide(world, wide, &q))
         return;
     const ty_trace_object* object = ty_trace_object_of(world, q.instance);
     ray_hit->ray.tfar = q.t_max;
@@ -113,47 +132,75 @@ void ty_trace_wide_intersect(const ty_world* world, const ty_trace_wide* wide, c
 bool ty_trace_wide_occluded(const ty_world* world, const ty_trace_wide* wide, const ty_ray* ray,
                             const struct RTCRay* embree_ray)
 {
-    ty_wide_query q = wide_query(world, wide, ray, embree_ray);
-    return world->use_avx512 ? ty_wide_occluded_avx512(world, wide, &q) : ty_wide_occluded_base(world, wide, &q);
+    ty_wide_query q = moved_query(world, wide, ray, embree_ray);
+    return occluded_wide(world, wide, &q);
 }
 
-bool ty_world_intersect(const ty_world* world, const ty_ray* ray, ty_hit* hit)
+static void fill_hit(const struct RTCRayHit* ray_hit, uint32_t object, uint32_t instance, float time, ty_hit* hit)
 {
-    struct RTCRayHit ray_hit = {.ray = make_ray(ray->origin, ray->t_min, ray->direction, ray->t_max)};
+    *hit = (ty_hit){.t = ray_hit->ray.tfar,
+                    .u = ray_hit->hit.u,
+                    .v = ray_hit->hit.v,
+                    .object = object,
+                    .instance = instance,
+                    .triangle = ray_hit->hit.primID,
+                    .time = time};
+}
+
+// What Embree holds of the world, before t_max.
+static bool intersect_rest(const ty_world* world, const ty_ray* ray, float t_max, ty_hit* hit)
+{
+    struct RTCRayHit ray_hit;
+    ray_hit.ray = make_ray(ray->origin, ray->t_min, ray->direction, t_max);
     ray_hit.ray.mask = ray->mask;
     ray_hit.ray.time = ray->time;
     ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    if (world->wide)
-        ty_trace_wide_intersect(world, world->wide, ray, &ray_hit);
-    if (world->has_rest)
-    {
-        ty_trace_context context = make_context(world, ray);
-        ty_embree_intersect(world->scene, &context.embree, top_filter(world, ray), &ray_hit);
-    }
+    ty_trace_context context = make_context(world, ray);
+    ty_embree_intersect(world->scene, &context.embree, top_filter(world, ray), &ray_hit);
     if (ray_hit.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return false;
-    find_object(world, ray_hit.hit.instID[0], &hit->object, &hit->instance);
+    uint32_t object, instance;
+    find_object(world, ray_hit.hit.instID[0], &object, &instance);
     // Our own levels leave the instance as the geometry; a prototype's only geometry is 0.
-    if (world->path == TY_TRACE_FAST)
-        hit->instance = ray_hit.hit.geomID;
-    hit->triangle = ray_hit.hit.primID;
-    hit->t = ray_hit.ray.tfar;
-    hit->u = ray_hit.hit.u;
-    hit->v = ray_hit.hit.v;
-    hit->time = ray->time;
+    fill_hit(&ray_hit, object, world->path == TY_TRACE_FAST ? ray_hit.hit.geomID : instance, ray->time, hit);
+    return true;
+}
+
+bool ty_world_intersect(const ty_world* world, const ty_ray* ray, ty_hit* hit)
+{
+    if (!world->wide)
+        return world->has_rest && intersect_rest(world, ray, ray->t_max, hit);
+    ty_wide_query q = wide_query(world, world->wide, ray);
+    bool found = intersect_wide(world, world->wide, &q);
+    if (world->has_rest && intersect_rest(world, ray, q.t_max, hit))
+        return true;
+    if (!found)
+        return false;
+    const ty_trace_object* object = ty_trace_object_of(world, q.instance);
+    *hit = (ty_hit){.t = q.t_max,
+                    .u = q.u,
+                    .v = q.v,
+                    .object = object->index,
+                    .instance = q.instance - object->first,
+                    .triangle = q.triangle,
+                    .time = ray->time};
     return true;
 }
 
 bool ty_world_occluded(const ty_world* world, const ty_ray* ray)
 {
+    if (world->wide)
+    {
+        ty_wide_query q = wide_query(world, world->wide, ray);
+        if (occluded_wide(world, world->wide, &q))
+            return true;
+    }
+    if (!world->has_rest)
+        return false;
     struct RTCRay r = make_ray(ray->origin, ray->t_min, ray->direction, ray->t_max);
     r.mask = ray->mask;
     r.time = ray->time;
-    if (world->wide && ty_trace_wide_occluded(world, world->wide, ray, &r))
-        return true;
-    if (!world->has_rest)
-        return false;
     ty_trace_context context = make_context(world, ray);
     ty_embree_occluded(world->scene, &context.embree, top_filter(world, ray), &r);
     return r.tfar < 0.0f;
@@ -167,17 +214,6 @@ static bool intersect_mesh(const ty_world* world, uint32_t prototype, ty_vec3 or
     ty_trace_context context = make_context(world, NULL);
     ty_embree_intersect(world->prototypes[prototype].scene, &context.embree, NULL, ray_hit);
     return ray_hit->hit.geomID != RTC_INVALID_GEOMETRY_ID;
-}
-
-static void fill_hit(const struct RTCRayHit* ray_hit, uint32_t object, uint32_t instance, float time, ty_hit* hit)
-{
-    *hit = (ty_hit){.t = ray_hit->ray.tfar,
-                    .u = ray_hit->hit.u,
-                    .v = ray_hit->hit.v,
-                    .object = object,
-                    .instance = instance,
-                    .triangle = ray_hit->hit.primID,
-                    .time = time};
 }
 
 bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_t instance, float time, ty_vec3 origin,
