@@ -3,30 +3,31 @@
 #include <tsuya/base/memory.h>
 #include <tsuya/shading/sampling.h>
 
+// Shirley & Chiu 1997: squares become rings, which keeps the stratification. With a and b the distances
+// from the axes over the larger of them, the angle in a quarter is pi/4 (1 - a + b) on both sides of its diagonal, so
+// that these need not be told apart: that branch would be foretold wrongly every other time.
+static inline ty_vec2 concentric(ty_vec2 u, float* radius)
+{
+    float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f, ax = fabsf(x), ay = fabsf(y), r = ty_max(ax, ay);
+    float d = (ax - ay) / ty_max(r, 0x1p-60f), s = d * d;
+    // cos and sin of d pi/4 over the root of 2: Chebyshev fits, errors below 2e-8.
+    float c = 0.70710676f + s * (-0.21808888f + s * (0.011207579f + s * -0.00022548042f));
+    float t = d * (0.55536037f + s * (-0.057095644f + s * (0.0017607007f + s * -2.5423523e-05f)));
+    *radius = r;
+    return (ty_vec2){copysignf(r * (c + t), x), copysignf(r * (c - t), y)};
+}
+
 ty_vec2 ty_sample_disc(ty_vec2 u)
 {
-    // Shirley & Chiu 1997: keeps the stratification of the square.
-    float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f, r, phi, sine, cosine;
-    if (x == 0.0f && y == 0.0f)
-        return (ty_vec2){0, 0};
-    if (fabsf(x) > fabsf(y))
-    {
-        r = x;
-        phi = (TY_PI / 4) * (y / x);
-    }
-    else
-    {
-        r = y;
-        phi = TY_PI / 2 - (TY_PI / 4) * (x / y);
-    }
-    ty_sincos(phi, &sine, &cosine);
-    return (ty_vec2){r * cosine, r * sine};
+    float radius;
+    return concentric(u, &radius);
 }
 
 ty_vec3 ty_sample_cosine(ty_vec2 u)
 {
-    ty_vec2 d = ty_sample_disc(u);
-    return (ty_vec3){d.x, d.y, ty_safe_sqrt(1.0f - d.x * d.x - d.y * d.y)};
+    float radius;
+    ty_vec2 d = concentric(u, &radius);
+    return (ty_vec3){d.x, d.y, sqrtf(1.0f - radius * radius)};
 }
 
 ty_vec3 ty_sample_sphere(ty_vec2 u)
