@@ -108,11 +108,6 @@ ty_status ty_world_add_aggregate(ty_world* world, const ty_aggregate* aggregate,
 
 // --- what an instance refers to ---
 
-uint32_t ty_trace_prototype_of(const ty_trace_object* object, uint32_t instance)
-{
-    return object->prototypes[object->aggregate ? object->aggregate->prototype_index[instance] : 0];
-}
-
 ty_affine ty_trace_inner_map(const ty_trace_object* object, uint32_t instance)
 {
     return object->aggregate ? object->aggregate->transforms[instance] : ty_affine_identity();
@@ -142,16 +137,10 @@ const ty_mesh* ty_world_mesh(const ty_world* world, uint32_t object, uint32_t in
     return world->prototypes[ty_world_prototype(world, object, instance)].mesh;
 }
 
-const ty_affine* ty_trace_to_world(const ty_trace_object* object, uint32_t instance, float time, ty_affine* scratch)
+ty_affine ty_trace_made_map(const ty_trace_object* object, uint32_t instance, float time)
 {
-    if (object->aggregate && object->is_identity)
-        return &object->aggregate->transforms[instance];
-    if (!object->aggregate && object->step_count == 1)
-        return &object->steps[0];
-    *scratch = ty_trace_map_at(object->steps, object->step_count, time);
-    if (object->aggregate)
-        *scratch = ty_affine_multiply(scratch, &object->aggregate->transforms[instance]);
-    return scratch;
+    ty_affine map = ty_trace_map_at(object->steps, object->step_count, time);
+    return object->aggregate ? ty_affine_multiply(&map, &object->aggregate->transforms[instance]) : map;
 }
 
 ty_affine ty_world_to_world(const ty_world* world, uint32_t object, uint32_t instance, float time)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The surface at a hit: position, normals, uv; and where a ray that leaves it may begin.
 #include "trace_world.h"
+#include <tsuya/base/simd_vec3.h>
 
 typedef struct corners
 {
@@ -14,61 +15,81 @@ static corners corners_of(const ty_mesh* mesh, uint32_t triangle, float u, float
     return (corners){mesh, mesh->triangles[triangle], {1.0f - u - v, u, v}};
 }
 
-static ty_vec3 blend3(const corners* c, const ty_vec3* field)
+// A vector at each corner.
+typedef struct triple
 {
-    ty_vec3 sum = ty_mul(field[c->v[0]], c->w[0]);
-    return ty_mad(ty_mad(sum, field[c->v[1]], c->w[1]), field[c->v[2]], c->w[2]);
+    ty_f4 a, b, c;
+} triple;
+
+static inline triple triple_of(const corners* c, const ty_vec3* field)
+{
+    return (triple){ty_f4_load(&field[c->v[0]]), ty_f4_load(&field[c->v[1]]), ty_f4_load(&field[c->v[2]])};
 }
 
-static ty_vec3 magnitude(ty_vec3 v)
+static inline ty_f4 blend(const corners* c, const triple* t)
 {
-    return (ty_vec3){fabsf(v.x), fabsf(v.y), fabsf(v.z)};
+    ty_f4 ab = ty_f4_mad(ty_f4_mul(t->a, ty_f4_set(c->w[0])), t->b, ty_f4_set(c->w[1]));
+    return ty_f4_mad(ab, t->c, ty_f4_set(c->w[2]));
+}
+
+static inline ty_f4 normalized(ty_f4 v, float* length)
+{
+    *length = sqrtf(ty_f4_dot(v, v));
+    return *length > 0.0f ? ty_f4_mul(v, ty_f4_set(1.0f / *length)) : v;
 }
 
 // Largest coordinate of the sums that give the position: its rounding error, and that of the ray's own map, grows with
 // it.
-static float reach(const corners* c, const ty_affine* m)
+static inline float reach(const triple* p, const ty_f4_columns* m, ty_f4 translation)
 {
-    const ty_vec3* p = c->mesh->positions;
-    ty_vec3 far = ty_max3(magnitude(p[c->v[0]]), ty_max3(magnitude(p[c->v[1]]), magnitude(p[c->v[2]])));
-    ty_vec3 sum = ty_mad(magnitude(m->t), magnitude(m->x), far.x);
-    sum = ty_mad(ty_mad(sum, magnitude(m->y), far.y), magnitude(m->z), far.z);
-    return ty_max(sum.x, ty_max(sum.y, sum.z));
+    ty_f4 far = ty_f4_max(ty_f4_abs(p->a), ty_f4_max(ty_f4_abs(p->b), ty_f4_abs(p->c)));
+    ty_f4 sum = ty_f4_mad(ty_f4_abs(translation), ty_f4_abs(m->x), ty_f4_xxx(far));
+    sum = ty_f4_mad(ty_f4_mad(sum, ty_f4_abs(m->y), ty_f4_yyy(far)), ty_f4_abs(m->z), ty_f4_zzz(far));
+    return ty_f4_largest(sum);
 }
 
 // Normals go by the inverse transpose: the cofactors over the determinant, of which the sign alone matters as long as
 // nothing underflows. They stay outward under a mirror.
-static ty_affine cofactors(const ty_affine* m)
+static inline ty_f4_columns cofactors(const ty_f4_columns* m)
 {
-    ty_affine c = {ty_cross(m->y, m->z), ty_cross(m->z, m->x), ty_cross(m->x, m->y), {0, 0, 0}};
-    float determinant = ty_dot(c.x, m->x);
-    float scale = fabsf(determinant) > 1e-12f ? copysignf(1.0f, determinant) : 1.0f / determinant;
-    return (ty_affine){ty_mul(c.x, scale), ty_mul(c.y, scale), ty_mul(c.z, scale), {0, 0, 0}};
+    ty_f4_columns c = {ty_f4_cross(m->y, m->z), ty_f4_cross(m->z, m->x), ty_f4_cross(m->x, m->y)};
+    float determinant = ty_f4_dot(c.x, m->x);
+    ty_f4 scale = ty_f4_set(fabsf(determinant) > 1e-12f ? copysignf(1.0f, determinant) : 1.0f / determinant);
+    return (ty_f4_columns){ty_f4_mul(c.x, scale), ty_f4_mul(c.y, scale), ty_f4_mul(c.z, scale)};
 }
 
 // Not of unit length, but not too short for its square either.
-static ty_vec3 triangle_normal(const ty_vec3* positions, const uint32_t* v)
+static inline ty_f4 triangle_normal(const triple* p)
 {
-    ty_vec3 p = positions[v[0]], e1 = ty_sub(positions[v[1]], p), e2 = ty_sub(positions[v[2]], p);
-    ty_vec3 n = ty_cross(e1, e2);
-    return ty_length_sqr(n) > 1e-24f ? n : ty_normalize(ty_cross(ty_normalize(e1), ty_normalize(e2)));
+    ty_f4 e1 = ty_f4_sub(p->b, p->a), e2 = ty_f4_sub(p->c, p->a), n = ty_f4_cross(e1, e2);
+    if (ty_f4_dot(n, n) > 1e-24f)
+        return n;
+    float length;
+    return normalized(ty_f4_cross(normalized(e1, &length), normalized(e2, &length)), &length);
 }
 
 // The horizon of a triangle under any multiple m of the inverse transpose of its map; n is the normal before, length
 // after it. In the prototype's space a direction w has elevation n.(m^T w) / |n| |m^T w|; the last is at most the root
 // of Gershgorin's bound of m m^T, exact for a similarity.
-static float horizon_at(const ty_trace_prototype* prototype, uint32_t triangle, const ty_affine* m, ty_vec3 n,
-                        float length)
+static inline float horizon_at(const ty_trace_prototype* prototype, uint32_t triangle, const ty_f4_columns* m, ty_f4 n,
+                               float length)
 {
     if (!prototype->horizons || prototype->horizons[triangle] == 255)
         return 1.0f;
     if (prototype->horizons[triangle] == 0)
         return 0.0f;
-    float xy = fabsf(ty_dot(m->x, m->y)), yz = fabsf(ty_dot(m->y, m->z)), zx = fabsf(ty_dot(m->z, m->x));
-    float stretch_sqr =
-        ty_max(ty_dot(m->x, m->x) + xy + zx, ty_max(ty_dot(m->y, m->y) + xy + yz, ty_dot(m->z, m->z) + yz + zx));
+    float xy = fabsf(ty_f4_dot(m->x, m->y)), yz = fabsf(ty_f4_dot(m->y, m->z)), zx = fabsf(ty_f4_dot(m->z, m->x));
+    float stretch_sqr = ty_max(ty_f4_dot(m->x, m->x) + xy + zx,
+                               ty_max(ty_f4_dot(m->y, m->y) + xy + yz, ty_f4_dot(m->z, m->z) + yz + zx));
     float sine = (float)prototype->horizons[triangle] * (1.00001f / TY_HORIZON_STEPS);
-    return ty_min(sine * sqrtf(stretch_sqr * ty_length_sqr(n)) / length, 1.0f);
+    return ty_min(sine * sqrtf(stretch_sqr * ty_f4_dot(n, n)) / length, 1.0f);
+}
+
+static ty_vec2 blend_uv(const corners* c)
+{
+    const ty_vec2* uvs = c->mesh->uvs;
+    ty_vec2 p = uvs[c->v[0]], q = uvs[c->v[1]], r = uvs[c->v[2]];
+    return (ty_vec2){p.x * c->w[0] + q.x * c->w[1] + r.x * c->w[2], p.y * c->w[0] + q.y * c->w[1] + r.y * c->w[2]};
 }
 
 void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point* out)
@@ -79,33 +100,31 @@ void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point
     ty_affine scratch;
     const ty_affine* to_world = ty_trace_to_world(object, hit->instance, hit->time, &scratch);
     corners c = corners_of(mesh, hit->triangle, hit->u, hit->v);
-    ty_affine m = cofactors(to_world);
-    ty_vec3 n = triangle_normal(mesh->positions, c.v), mapped = ty_map_vector(&m, n);
-    float length = ty_length(mapped);
-    ty_vec3 ng = length > 0.0f ? ty_mul(mapped, 1.0f / length) : mapped;
-    ty_vec3 ns = ty_normalize(ty_map_vector(&m, blend3(&c, mesh->normals)));
-    float side = ty_dot(ns, ng);
+    ty_f4_columns map = ty_f4_columns_of(to_world), m = cofactors(&map);
+    ty_f4 translation = ty_f4_load(&to_world->t);
+    triple positions = triple_of(&c, mesh->positions), normals = triple_of(&c, mesh->normals);
+    float length, ignored;
+    ty_f4 n = triangle_normal(&positions), ng = normalized(ty_f4_map_vector(&m, n), &length);
+    ty_f4 ns = normalized(ty_f4_map_vector(&m, blend(&c, &normals)), &ignored);
+    float side = ty_f4_dot(ns, ng);
     if (side < 0.0f)
-        ns = ty_neg(ns);
+        ns = ty_f4_sub(ty_f4_set(0.0f), ns);
     else if (side == 0.0f)
         ns = ng;
-    *out = (ty_surface_point){.position = ty_map_point(to_world, blend3(&c, mesh->positions)),
-                              .ng = ng,
-                              .ns = ns,
-                              .reach = reach(&c, to_world),
-                              .object = hit->object,
-                              .instance = hit->instance,
-                              .triangle = hit->triangle,
-                              .u = hit->u,
-                              .v = hit->v,
-                              .time = hit->time,
-                              .horizon = horizon_at(prototype, hit->triangle, &m, n, length),
-                              .convex = prototype->topology.convex};
-    if (mesh->uvs)
-    {
-        ty_vec2 a = mesh->uvs[c.v[0]], b = mesh->uvs[c.v[1]], d = mesh->uvs[c.v[2]];
-        out->uv = (ty_vec2){a.x * c.w[0] + b.x * c.w[1] + d.x * c.w[2], a.y * c.w[0] + b.y * c.w[1] + d.y * c.w[2]};
-    }
+    ty_f4_store(&out->position, ty_f4_add(ty_f4_map_vector(&map, blend(&c, &positions)), translation));
+    ty_f4_store(&out->ng, ng);
+    ty_f4_store(&out->ns, ns);
+    out->reach = reach(&positions, &map, translation);
+    out->uv = mesh->uvs ? blend_uv(&c) : (ty_vec2){0};
+    out->object = hit->object;
+    out->instance = hit->instance;
+    out->triangle = hit->triangle;
+    out->u = hit->u;
+    out->v = hit->v;
+    out->footprint[0] = out->footprint[1] = (ty_vec3){0};
+    out->time = hit->time;
+    out->horizon = horizon_at(prototype, hit->triangle, &m, n, length);
+    out->convex = prototype->topology.convex;
 }
 
 float ty_world_interpolate(const ty_world* world, const ty_surface_point* point, const float* vertex_field)

@@ -76,11 +76,24 @@ TY_CHECKED bool ty_trace_make_room(void** array, uint32_t count, uint32_t* capac
 
 // --- trace_object.c ---
 void ty_trace_free_objects(ty_world* world);
-uint32_t ty_trace_prototype_of(const ty_trace_object* object, uint32_t instance);
+static inline uint32_t ty_trace_prototype_of(const ty_trace_object* object, uint32_t instance)
+{
+    return object->prototypes[object->aggregate ? object->aggregate->prototype_index[instance] : 0];
+}
 // An instance within its object, before the object's own map.
 ty_affine ty_trace_inner_map(const ty_trace_object* object, uint32_t instance);
 // Prototype to world, where it lies or in scratch: a copy just written costs more to read than a hit's arithmetic.
-const ty_affine* ty_trace_to_world(const ty_trace_object* object, uint32_t instance, float time, ty_affine* scratch);
+ty_affine ty_trace_made_map(const ty_trace_object* object, uint32_t instance, float time);
+static inline const ty_affine* ty_trace_to_world(const ty_trace_object* object, uint32_t instance, float time,
+                                                 ty_affine* scratch)
+{
+    if (object->aggregate && object->is_identity)
+        return &object->aggregate->transforms[instance];
+    if (!object->aggregate && object->step_count == 1)
+        return &object->steps[0];
+    *scratch = ty_trace_made_map(object, instance, time);
+    return scratch;
+}
 // The object that holds an instance of the world's numbering.
 const ty_trace_object* ty_trace_object_of(const ty_world* world, uint32_t instance);
 
