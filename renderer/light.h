@@ -195,8 +195,8 @@ static inline bool ty_light_rectangle_meet(const ty_light* light, const ty_ray* 
     ty_vec3 d = ty_sub(ray->origin, light->center);
     *t = ty_dot(d, light->frame.n) / cosine;
     ty_vec3 q = ty_mad(d, ray->direction, *t);
-    return (cosine > 0.0f) & (*t > 0.0f) & (fabsf(ty_dot(q, light->frame.t)) <= light->half_size[0]) &
-           (fabsf(ty_dot(q, light->frame.b)) <= light->half_size[1]);
+    return (int)(cosine > 0.0f) & (int)(*t > 0.0f) & (int)(fabsf(ty_dot(q, light->frame.t)) <= light->half_size[0]) &
+           (int)(fabsf(ty_dot(q, light->frame.b)) <= light->half_size[1]);
 }
 
 void ty_light_disk_init(ty_light* light, const ty_light_def* def);
