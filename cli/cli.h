@@ -118,4 +118,4 @@ void ty_signals_install(void);
 extern const ty_command ty_command_render, ty_command_develop, ty_command_merge, ty_command_check, ty_command_info,
     ty_command_params, ty_command_pack, ty_command_fill, ty_command_roots, ty_command_doctor;
 extern const ty_command ty_command_compare, ty_command_regress;
-extern const ty_command ty_command_turntable;
+extern const ty_command ty_command_turntable, ty_command_sweep;

@@ -11,6 +11,7 @@
 static const ty_command* const commands[] = {
     &ty_command_render,    //
     &ty_command_turntable, //
+    &ty_command_sweep,     //
     &ty_command_develop,   //
     &ty_command_merge,     //
     &ty_command_compare,   //

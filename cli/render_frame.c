@@ -74,16 +74,16 @@ static ty_status judge_samples(const ty_render_job* job, const ty_scene* scene, 
     }
     const int* first = stats->first_nonfinite;
     char frame[32] = "";
-    if (job->lists)
+    if (job->lists && !job->repeat)
     {
         snprintf(frame, sizeof frame, " --frames %d", (int)scene->frame);
     }
     ty_log(TY_LOG_WARNING,
-           "%" PRIu64
-           " samples were not finite and count as black; the first is pixel %d,%d sample %d: tsuya render %s "
+           "%" PRIu64 " samples were not finite and count as black; the first is pixel %d,%d sample %d: %s%s "
            "--crop %d,%d,%d,%d --samples %d-%d%s -o bad.exr",
-           stats->nonfinite_samples, first[0], first[1], first[2], job->arguments->positional[0], first[0], first[1],
-           first[0], first[1], first[2], first[2], frame);
+           stats->nonfinite_samples, first[0], first[1], first[2], job->repeat ? job->repeat : "tsuya render ",
+           job->repeat ? "" : job->arguments->positional[0], first[0], first[1], first[0], first[1], first[2], first[2],
+           frame);
     return (double)stats->nonfinite_samples > NON_FINITE_SHARE * (double)stats->camera_rays ? TY_NON_FINITE : TY_OK;
 }
 

@@ -22,6 +22,7 @@ typedef struct ty_render_job
     ty_render_options render;
     double next_preview; // seconds of rendering
     json_t* results;     // of frames, with --json or --stats; NULL = none
+    const char* repeat;  // the command that renders this again, for messages; NULL = of the scene and its frame
 } ty_render_job;
 
 // --- render_options.c: what the command line says; mistakes are logged and TY_USAGE ---
@@ -46,7 +47,22 @@ TY_CHECKED ty_status ty_render_find(const ty_render_job* job, const ty_scene* sc
 TY_CHECKED ty_status ty_render_run(const ty_arguments* arguments, ty_scene_arguments* scene_arguments,
                                    ty_frame_list list);
 
-// The options that every command that renders understands, but for --frames.
+// What a picture is made of: for every command that renders.
+#define TY_PICTURE_OPTIONS                                                                                             \
+    {"quick", 'q', NULL, "half size, 16 samples, where --size, --spp and --set say nothing"},                          \
+        {"spp", 0, "N", "samples a pixel"},                                                                            \
+        {"samples", 0, "A-B", "only these sample indices: a part for `tsuya merge`"},                                  \
+        {"size", 0, "WxH", "picture size"}, {"crop", 0, "x0,y0,x1,y1", "only these pixels (inclusive)"},               \
+        {"seed", 0, "N", "seed of all random decisions"},                                                              \
+        {"aov", 0, "LIST", "alpha,Z,N,P,albedo,variance,instance,light | all | none"},                                 \
+        {"integrator", 0, "X", "path, albedo, normal, curvature, ao"},                                                 \
+        {"time-limit", 0, "SECONDS", "stop (each frame) after the pass that exceeds it"},                              \
+        {"trace", 0, "PATH", "fast, or reference: plain Embree instances"},                                            \
+    {                                                                                                                  \
+        "isa", 0, "NAME", "pin the CPU kernels: sse2, sse4.2, avx, avx2, avx512"                                       \
+    }
+
+// The options that commands that render frames understand, but for --frames.
 #define TY_RENDER_OPTIONS                                                                                              \
     {"output", 'o', "OUT.exr", "the picture (default: the scene's name); of frames with #### or %04d"},                \
         {"develop", 0, NULL, "also a PNG beside it, from early on"},                                                   \
@@ -56,18 +72,8 @@ TY_CHECKED ty_status ty_render_run(const ty_arguments* arguments, ty_scene_argum
         {"bits", 0, "8|16", "of the PNG: bits a channel (default 8)"},                                                 \
         {"video", 0, "OUT.mp4", "the developed frames as a video, by ffmpeg"},                                         \
         {"skip-existing", 0, NULL, "leave frames that are there: complete, of this very scene and these channels"},    \
-        TY_SCENE_OPTIONS, {"quick", 'q', NULL, "half size, 16 samples, where --size, --spp and --set say nothing"},    \
-        {"spp", 0, "N", "samples a pixel"},                                                                            \
-        {"samples", 0, "A-B", "only these sample indices: a part for `tsuya merge`"},                                  \
-        {"size", 0, "WxH", "picture size"}, {"crop", 0, "x0,y0,x1,y1", "only these pixels (inclusive)"},               \
-        {"seed", 0, "N", "seed of all random decisions"},                                                              \
-        {"aov", 0, "LIST", "alpha,Z,N,P,albedo,variance,instance,light | all | none"},                                 \
-        {"integrator", 0, "X", "path, albedo, normal, curvature, ao"},                                                 \
-        {"time-limit", 0, "SECONDS", "stop (each frame) after the pass that exceeds it"},                              \
-        {"trace", 0, "PATH", "fast, or reference: plain Embree instances"},                                            \
-        {"isa", 0, "NAME", "pin the CPU kernels: sse2, sse4.2, avx, avx2, avx512"},                                    \
-        {"stats", 0, "F.json", "statistics as JSON"}, {"progress", 0, "M", "auto, bar, lines, none"},                  \
-        {"json", 0, NULL, "the result as JSON on standard output"},                                                    \
+        TY_SCENE_OPTIONS, TY_PICTURE_OPTIONS, {"stats", 0, "F.json", "statistics as JSON"},                            \
+        {"progress", 0, "M", "auto, bar, lines, none"}, {"json", 0, NULL, "the result as JSON on standard output"},    \
     {                                                                                                                  \
         "dry-run", 0, NULL, "check everything, render nothing"                                                         \
     }
