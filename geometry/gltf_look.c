@@ -143,8 +143,6 @@ static ty_status read_texture(const reader* r, const json_t* parent, const char*
     out->uv_set = (int)set;
     out->wrap_u = wrap_of(sampled, "wrapS");
     out->wrap_v = wrap_of(sampled, "wrapT");
-    if (out->wrap_u != out->wrap_v)
-        ty_gltf_warn(r->scene, "textures[%d] goes on in two ways; its wrapS is taken for both", (int)index);
     return read_transform(r, info, what, out);
 }
 

@@ -15,7 +15,7 @@ typedef struct reader
 {
     ty_mip_cache* cache;
     const ty_oiio_tile_file* file;
-    ty_wrap wrap;
+    const ty_wrap* wrap;    // along u and v
     const uint16_t* texels; // NULL = none yet, or it cannot be read
     int level, column, row; // of the tile; level -1 = none yet
 } reader;
@@ -53,8 +53,8 @@ static void add_texel(const reader* r, int x, int y, float weight, float sum[4])
 static void add_bilinear(reader* r, int level, ty_vec2 uv, float weight, float sum[4])
 {
     int x[2], y[2], width = r->file->width >> level, height = r->file->height >> level;
-    float s = ty_wrap_taps(uv.x, width > 1 ? width : 1, r->wrap, x);
-    float t = ty_wrap_taps(1.0f - uv.y, height > 1 ? height : 1, r->wrap, y);
+    float s = ty_wrap_taps(uv.x, width > 1 ? width : 1, r->wrap[0], x);
+    float t = ty_wrap_taps(1.0f - uv.y, height > 1 ? height : 1, r->wrap[1], y);
     const float wx[2] = {1.0f - s, s}, wy[2] = {1.0f - t, t};
     for (int j = 0; j < 2; j++)
         for (int i = 0; i < 2; i++)
@@ -142,8 +142,8 @@ static void add_filtered(reader* r, ty_vec2 uv, ty_vec2 du, ty_vec2 dv, float we
     }
 }
 
-void ty_mip_image_add(ty_mip_cache* cache, const ty_mip_image* image, ty_wrap wrap, ty_vec2 uv, ty_vec2 du, ty_vec2 dv,
-                      float weight, float sum[4])
+void ty_mip_image_add(ty_mip_cache* cache, const ty_mip_image* image, const ty_wrap wrap[2], ty_vec2 uv, ty_vec2 du,
+                      ty_vec2 dv, float weight, float sum[4])
 {
     reader r = {.cache = cache, .file = &image->file, .wrap = wrap, .level = -1};
     add_filtered(&r, uv, du, dv, weight, sum);

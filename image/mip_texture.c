@@ -20,7 +20,8 @@ struct ty_mip_texture
 
 ty_mip_texture_def ty_mip_texture_def_default(void)
 {
-    return (ty_mip_texture_def){.wrap = TY_WRAP_REPEAT, .last = -1, .fps = 24.0f, .end = TY_SEQUENCE_STOP};
+    return (ty_mip_texture_def){
+        .wrap = {TY_WRAP_REPEAT, TY_WRAP_REPEAT}, .last = -1, .fps = 24.0f, .end = TY_SEQUENCE_STOP};
 }
 
 static ty_status find_frames(const ty_mip_texture_def* def, int* first, int* count, ty_error* error)

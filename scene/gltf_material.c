@@ -55,7 +55,8 @@ static void add_map(ty_text* text, const ty_gltf_texture* map, const char* chann
     float s, c;
     ty_sincos(map->rotation, &s, &c);
     float offset[2] = {map->offset[0] + s * map->scale[1], 1.0f - map->offset[1] - c * map->scale[1]};
-    ty_text_format(text, "\"texture\": \"%d\", \"wrap\": \"%s\"", map->image, wraps[map->wrap_u]);
+    ty_text_format(text, "\"texture\": \"%d\", \"wrap\": [\"%s\", \"%s\"]", map->image, wraps[map->wrap_u],
+                   wraps[map->wrap_v]);
     if (channel)
         ty_text_format(text, ", \"channel\": \"%s\"", channel);
     ty_text_format(text, ", \"uv\": {\"scale\": [%.9g, %.9g], \"rotate\": %.9g, \"offset\": [%.9g, %.9g]}",

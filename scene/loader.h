@@ -228,9 +228,10 @@ void ty_load_assets(ty_loader* loader);
 // scene_textures.c: textures of materials. Indices are the same for equal ones, -1 after a report. is_data: numbers,
 // not colours.
 int ty_surface_texture_of_asset(ty_loader* loader, int asset, const ty_node* name, bool is_data);
-int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data, int wrap); // wrap -1 = not said
-void ty_load_surface_textures(ty_loader* loader); // after the assets: recipes make frames
-void ty_set_texture_times(ty_loader* loader);     // to the scene's seconds
+int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data,
+                               const int wrap[2]); // along u and v, -1 = not said
+void ty_load_surface_textures(ty_loader* loader);  // after the assets: recipes make frames
+void ty_set_texture_times(ty_loader* loader);      // to the scene's seconds
 // mesh_sequence.c: meshes that change with time
 // When a sequence shows what, as textures and meshes understand it; and a report where the definition contradicts
 // itself.

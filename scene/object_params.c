@@ -30,8 +30,8 @@ static void texture_default(void* def)
 static void frames_default(void* def)
 {
     ty_mip_texture_def texture = ty_mip_texture_def_default();
-    *(ty_frames_asset_def*)def =
-        (ty_frames_asset_def){.wrap = (int)texture.wrap, .sequence = {.fps = texture.fps, .last_frame = texture.last}};
+    *(ty_frames_asset_def*)def = (ty_frames_asset_def){.wrap = (int)texture.wrap[0],
+                                                       .sequence = {.fps = texture.fps, .last_frame = texture.last}};
 }
 
 static void aggregate_default(void* def)

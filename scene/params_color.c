@@ -137,8 +137,8 @@ static bool read_input_source(ty_reader* reader, ty_node* node, const ty_param* 
         return false;
     if (texture)
     {
-        int wrap = -1;
-        if (!ty_param_read_mapping(reader, node, out, &wrap))
+        int wrap[2] = {-1, -1};
+        if (!ty_param_read_mapping(reader, node, out, wrap))
             return false;
         out->texture = texture->text;
         out->texture_index = reader->find_texture(reader->context, texture, row->type != TY_PARAM_COLOR_INPUT,

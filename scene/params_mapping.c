@@ -61,7 +61,17 @@ static const ty_param rows[] = {
      .offset = offsetof(ty_input, blend)},
 };
 
-bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* input, int* wrap)
+// One word, or one for u and one for v.
+static bool read_wrap(ty_reader* reader, ty_node* said, int wrap[2])
+{
+    static const ty_param row = {.name = "wrap", .type = TY_PARAM_ENUM, .unit = "", .choices = wraps};
+    bool two = said->kind == TY_NODE_LIST && said->count == 2;
+    bool good = ty_param_read(reader, two ? said->items[0] : said, &row, &wrap[0]);
+    wrap[1] = wrap[0];
+    return good && (!two || ty_param_read(reader, said->items[1], &row, &wrap[1]));
+}
+
+bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* input, int wrap[2])
 {
     bool good = true;
     for (int i = 0; i < TY_PARAM_COUNT(rows); ++i)
@@ -77,10 +87,9 @@ bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* inp
             good = false;
         }
     }
-    static const ty_param wrap_row = {.name = "wrap", .type = TY_PARAM_ENUM, .unit = "", .choices = wraps};
     ty_node *uv = ty_node_get(node, "uv"), *said = ty_node_get(node, "wrap");
     if (said)
-        good &= ty_param_read(reader, said, &wrap_row, wrap);
+        good &= read_wrap(reader, said, wrap);
     placement place;
     if (!uv)
         return good;

@@ -16,7 +16,7 @@ typedef struct ty_reader
     // What a texture or attribute of an input refers to; index or -1 after a report. NULL where inputs cannot have
     // them.
     // is_data: numbers, not colours; by_uv: needs texture coordinates
-    int (*find_texture)(void* context, ty_node* name, bool is_data, bool by_uv, int wrap);
+    int (*find_texture)(void* context, ty_node* name, bool is_data, bool by_uv, const int wrap[2]);
     int (*find_attribute)(void* context, const ty_node* name);
     void* context;
 } ty_reader;
@@ -36,7 +36,7 @@ bool ty_param_read_number(ty_reader* reader, const ty_node* node, const ty_param
 bool ty_param_read_numbers(ty_reader* reader, const ty_node* node, const ty_param* row, float* out, int count);
 bool ty_param_read_rgb(ty_reader* reader, ty_node* node, const ty_param* row, ty_rgb* out);
 // mapping, uv, channel, size and blend of an input that has a texture.
-bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* input, int* wrap);
+bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* input, int wrap[2]);
 bool ty_param_read_input(ty_reader* reader, ty_node* node, const ty_param* row, ty_input* out);
 // Reports every key of a mapping that is not among keys (NULL-terminated); of = what the mapping is.
 bool ty_params_check_keys(ty_reader* reader, const ty_node* map, const char* const* keys, const char* of);

@@ -64,7 +64,9 @@ static void add_input(ty_text* out, const ty_param* row)
         ", \"uv\": {\"type\": \"object\", \"properties\": {\"scale\": {}, \"offset\": {}, \"rotate\": {}}, "
         "\"additionalProperties\": false}, \"mapping\": {\"enum\": [\"uv\", \"triplanar\"]}, \"size\": {\"type\": "
         "\"number\"}, \"blend\": {\"type\": \"number\"}, \"channel\": {\"enum\": [\"all\", \"r\", \"g\", \"b\", "
-        "\"a\", \"luminance\"]}, \"wrap\": {\"enum\": [\"repeat\", \"clamp\", \"mirror\"]}, \"attribute\": "
+        "\"a\", \"luminance\"]}, \"wrap\": {\"anyOf\": [{\"enum\": [\"repeat\", \"clamp\", \"mirror\"]}, {\"type\": "
+        "\"array\", \"minItems\": 2, \"maxItems\": 2, \"items\": {\"enum\": [\"repeat\", \"clamp\", \"mirror\"]}}]}, "
+        "\"attribute\": "
         "{\"type\": \"string\"}";
     for (int i = 0; i < 2; ++i)
     {

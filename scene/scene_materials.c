@@ -5,14 +5,14 @@
 #include <string.h>
 
 // An asset of that name, else a file; a name without a dot or slash can only be meant as an asset.
-static int find_texture(void* context, ty_node* name, bool is_data, bool by_uv, int wrap)
+static int find_texture(void* context, ty_node* name, bool is_data, bool by_uv, const int wrap[2])
 {
     ty_loader* loader = context;
     loader->textured[loader->current_material] |= by_uv;
     int index = ty_node_find(loader->asset_map, name->text);
     if (index < 0 && !strpbrk(name->text, "./"))
         return ty_asset_find(loader, name);
-    if (index >= 0 && wrap >= 0)
+    if (index >= 0 && wrap[0] >= 0)
     {
         ty_report(loader->errors, name->place, TY_BAD_INPUT, "'wrap' belongs to the asset '%.200s'", name->text);
         return -1;

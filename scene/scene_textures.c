@@ -13,7 +13,7 @@ static bool same_texture(const ty_surface_texture* a, const ty_surface_texture* 
 {
     const ty_mip_texture_def *x = &a->def, *y = &b->def;
     return a->asset == b->asset && same_text(x->path, y->path) && same_text(x->color_space, y->color_space) &&
-           x->wrap == y->wrap;
+           x->wrap[0] == y->wrap[0] && x->wrap[1] == y->wrap[1];
 }
 
 static int index_of(ty_loader* loader, const ty_surface_texture* texture)
@@ -67,12 +67,12 @@ int ty_surface_texture_of_asset(ty_loader* loader, int asset_index, const ty_nod
     {
         texture.def.path = asset->texture_def.texture;
         texture.def.color_space = space_for(asset->texture_def.color_space, is_data);
-        texture.def.wrap = (ty_wrap)asset->texture_def.wrap;
+        texture.def.wrap[0] = texture.def.wrap[1] = (ty_wrap)asset->texture_def.wrap;
     }
     else if (asset->kind == TY_ASSET_FRAMES || made)
     {
         texture.def = ty_sequence_timing(&asset->frames_def.sequence);
-        texture.def.wrap = (ty_wrap)asset->frames_def.wrap;
+        texture.def.wrap[0] = texture.def.wrap[1] = (ty_wrap)asset->frames_def.wrap;
         texture.def.path = made ? NULL : asset->path;
         texture.def.color_space = space_for(asset->frames_def.color_space, is_data);
         texture.asset = asset_index;
@@ -86,13 +86,13 @@ int ty_surface_texture_of_asset(ty_loader* loader, int asset_index, const ty_nod
     return index_of(loader, &texture);
 }
 
-int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data, int wrap)
+int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data, const int wrap[2])
 {
     ty_surface_texture texture = {.def = ty_mip_texture_def_default(), .place = name->place, .asset = -1};
     texture.def.color_space = space_for(NULL, is_data);
     texture.def.path = ty_files_use(&loader->files, name, "texture");
-    if (wrap >= 0)
-        texture.def.wrap = (ty_wrap)wrap;
+    for (int i = 0; i < 2 && wrap[i] >= 0; ++i)
+        texture.def.wrap[i] = (ty_wrap)wrap[i];
     return texture.def.path ? index_of(loader, &texture) : -1;
 }
 

@@ -82,7 +82,7 @@ static ty_mip_texture* open_image(const char* path, const char* space, ty_wrap w
     ty_mip_texture_def def = ty_mip_texture_def_default();
     def.path = path;
     def.color_space = space;
-    def.wrap = wrap;
+    def.wrap[0] = def.wrap[1] = wrap;
     return open_def(cache, &def, 0.0);
 }
 
@@ -238,6 +238,32 @@ static void test_texels_and_wraps(void** state)
             assert_true(isfinite(ty_mip_texture_sample(texture, (ty_vec2){0.5f, 0.5f}, d, d).rgb.r));
         }
         ty_mip_texture_destroy(texture);
+    }
+}
+
+// Both axes go on by themselves.
+static void test_wraps_of_each_axis(void** state)
+{
+    (void)state;
+    char path[TY_PATH_MAX];
+    snprintf(path, sizeof path, "%s", write_image("index.exr", 5, 3, 1, index_of));
+    for (int pair = 0; pair < 9; pair++)
+    {
+        ty_mip_texture_def def = ty_mip_texture_def_default();
+        def.path = path;
+        def.color_space = "raw";
+        def.wrap[0] = (ty_wrap)(pair % 3);
+        def.wrap[1] = (ty_wrap)(pair / 3);
+        ty_mip_texture *both = open_def(cache, &def, 0.0), *u = open_image(path, "raw", def.wrap[0]),
+                       *v = open_image(path, "raw", def.wrap[1]);
+        for (float at = -2.1f; at < 3.0f; at += 0.13f)
+        {
+            assert_near(sample(both, at, 0.4f), sample(u, at, 0.4f), 0.0f);
+            assert_near(sample(both, 0.4f, at), sample(v, 0.4f, at), 0.0f);
+        }
+        ty_mip_texture_destroy(both);
+        ty_mip_texture_destroy(u);
+        ty_mip_texture_destroy(v);
     }
 }
 
@@ -602,6 +628,7 @@ int main(void)
         TEST(test_footprints_have_a_direction),
         TEST(test_last_level_is_the_mean),
         TEST(test_texels_and_wraps),
+        TEST(test_wraps_of_each_axis),
         TEST(test_spaces_and_channels),
         TEST(test_sequences_end_as_told),
         TEST(test_frames_are_blended),

@@ -168,14 +168,15 @@ static char* image_uri(void)
 }
 
 // The albedo at the middle of the four quarters of the square: top left, top right, bottom left, bottom right.
-static void quarters(const char* transform, float red[4], float green[4])
+static void quarters(const char* sampler, const char* transform, float red[4], float green[4])
 {
     char* uri = image_uri();
     char* rest = ty_string_format(
-        "\"images\":[{\"uri\":\"%s\"}],\"textures\":[{\"source\":0}],\"materials\":[{\"pbrMetallicRoughness\":{"
+        "\"images\":[{\"uri\":\"%s\"}],\"samplers\":[{%s}],\"textures\":[{\"source\":0,\"sampler\":0}],\"materials\":[{"
+        "\"pbrMetallicRoughness\":{"
         "\"metallicFactor\":0,\"baseColorTexture\":{\"index\":0%s}}}],\"meshes\":[{\"primitives\":[" QUAD
         ",\"material\":0}]}],\"nodes\":[{\"mesh\":0}]",
-        uri, transform);
+        uri, sampler, transform);
     write_quad(rest);
     ty_exr* exr = render_text(VIEW SKY "camera: { position: [0, 0, 5], look_at: [0, 0, 0], projection: orthographic, "
                                        "ortho_height: 2 }\nassets: { q: { gltf: quad.gltf } }\n"
@@ -195,19 +196,34 @@ static void textures_lie_as_in_the_file(void** state)
 {
     (void)state;
     float red[4], green[4];
-    quarters("", red, green);
+    quarters("", "", red, green);
     assert_true(red[0] > 1.5f * green[0] && green[1] > 1.5f * red[1]); // red is left, in ACEScg
     assert_true(red[0] > 2.0f * red[2] && green[1] > 2.0f * green[3]); // bright is up
-    quarters(",\"extensions\":{\"KHR_texture_transform\":{\"offset\":[0.5,0]}}", red, green);
+    quarters("", ",\"extensions\":{\"KHR_texture_transform\":{\"offset\":[0.5,0]}}", red, green);
     assert_true(green[0] > 1.5f * red[0] && red[1] > 1.5f * green[1]);
-    quarters(",\"extensions\":{\"KHR_texture_transform\":{\"offset\":[0,0.5]}}", red, green);
+    quarters("", ",\"extensions\":{\"KHR_texture_transform\":{\"offset\":[0,0.5]}}", red, green);
     assert_true(red[2] > 2.0f * red[0] && green[3] > 2.0f * green[1]);
     // A quarter turn of the coordinates counter-clockwise is one of the image clockwise: the left comes up.
-    quarters(",\"extensions\":{\"KHR_texture_transform\":{\"rotation\":1.57079633}}", red, green);
+    quarters("", ",\"extensions\":{\"KHR_texture_transform\":{\"rotation\":1.57079633}}", red, green);
     assert_true(red[0] > 1.5f * green[0] && red[1] > 1.5f * green[1] && green[2] > 1.5f * red[2]);
-    quarters(",\"extensions\":{\"KHR_texture_transform\":{\"scale\":[0.5,0.5]}}", red, green);
+    quarters("", ",\"extensions\":{\"KHR_texture_transform\":{\"scale\":[0.5,0.5]}}", red, green);
     for (int i = 0; i < 4; i++)
         assert_true(red[i] > 1.5f * green[i] && red[i] > 0.4f); // the red, bright quarter over all
+}
+
+// The right half beyond the image to the right, the bottom half below it.
+static void textures_go_on_as_in_the_file(void** state)
+{
+    (void)state;
+    static const char moved[] = ",\"extensions\":{\"KHR_texture_transform\":{\"offset\":[0.5,0.5]}}";
+    float red[4], green[4];
+    quarters("\"wrapS\":33071,\"wrapT\":10497", moved, red, green);
+    for (int i = 0; i < 4; i++)
+        assert_true(green[i] > 1.5f * red[i]); // the last column goes on
+    assert_true(green[2] > 2.0f * green[0] && green[3] > 2.0f * green[1]);
+    quarters("\"wrapS\":10497,\"wrapT\":33071", moved, red, green);
+    assert_true(green[0] > 1.5f * red[0] && red[1] > 1.5f * green[1]);
+    assert_true(fabsf(green[2] - green[0]) < 0.02f && fabsf(red[3] - red[1]) < 0.02f); // the last row goes on
 }
 
 static void instances_stand_where_they_were_written(void** state)
@@ -255,6 +271,7 @@ int main(void)
         cmocka_unit_test(emission_has_its_strength),
         cmocka_unit_test(glass_is_glass),
         cmocka_unit_test(textures_lie_as_in_the_file),
+        cmocka_unit_test(textures_go_on_as_in_the_file),
         cmocka_unit_test(instances_stand_where_they_were_written),
         cmocka_unit_test(materials_can_be_replaced),
     };

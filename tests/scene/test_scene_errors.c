@@ -213,6 +213,11 @@ static void assets_and_materials(void** state)
                       "no asset 'wod'");
     fixture_one_error("tsuya: 1\nmaterials: { m: { model: surface, base_color: { texture: a.png, wrap: round } } }\n",
                       2, 71, "'wrap': 'round' is not one of");
+    fixture_one_error(
+        "tsuya: 1\nmaterials: { m: { model: surface, base_color: { texture: a.png, wrap: [clamp, round] } } }\n", 2, 79,
+        "'wrap': 'round' is not one of");
+    fixture_one_error("tsuya: 1\nmaterials: { m: { model: surface, base_color: { texture: a.png, wrap: [clamp] } } }\n",
+                      2, 71, "'wrap'");
     fixture_one_error("tsuya: 1\nmaterials: { m: { model: surface, base_color: { value: 1 } } }\n", 2, 47,
                       "'base_color': expected a colour");
 }
