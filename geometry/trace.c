@@ -7,6 +7,8 @@
 // Up to this many plain objects at rest, the largest, are left to Embree: a bowl about a heap would be in every ray's
 // way through the wide level, where what is near comes first.
 #define LARGE_OBJECTS 64
+// Up to this many triangles of theirs in all, Embree gets the meshes instead of instances, and has their trees twice.
+#define MESH_TRIANGLES 200000u
 
 ty_world_def ty_world_def_default(void)
 {
@@ -164,6 +166,22 @@ static RTCGeometry create_instance_geometry(const ty_world* world, const ty_trac
     return geometry;
 }
 
+// The mesh itself, for what stands where its mesh has it: no ray has to be carried over.
+static RTCGeometry create_mesh_geometry(const ty_world* world, const ty_trace_object* object)
+{
+    const ty_trace_prototype* prototype = &world->prototypes[object->prototypes[0]];
+    RTCGeometry geometry = rtcNewGeometry(world->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (!geometry)
+        return NULL;
+    const ty_mesh* mesh = prototype->mesh;
+    const void* positions = rtcGetGeometryBufferData(rtcGetGeometry(prototype->scene, 0), RTC_BUFFER_TYPE_VERTEX, 0);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0, sizeof(ty_vec3),
+                               mesh->vertex_count);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh->triangles, 0,
+                               sizeof mesh->triangles[0], mesh->triangle_count);
+    return geometry;
+}
+
 static void attach(ty_world* world, const ty_trace_object* object, RTCGeometry geometry, uint32_t id)
 {
     if (!geometry)
@@ -215,6 +233,16 @@ static float largest_of_the_small(const ty_world* world)
     return largest[LARGE_OBJECTS];
 }
 
+// As Embree gets a plain object at rest.
+static RTCGeometry create_plain_geometry(const ty_world* world, const ty_trace_object* object, uint32_t* mesh_triangles)
+{
+    uint32_t triangles = world->prototypes[object->prototypes[0]].mesh->triangle_count;
+    if (!object->is_identity || triangles > MESH_TRIANGLES - *mesh_triangles)
+        return create_instance_geometry(world, object, 0);
+    *mesh_triangles += triangles;
+    return create_mesh_geometry(world, object);
+}
+
 // Embree gets what moves and the largest plain objects, by the object's number as geometry id; the wide level all
 // else.
 static ty_status attach_fast(ty_world* world, ty_error* error)
@@ -223,7 +251,7 @@ static ty_status attach_fast(ty_world* world, ty_error* error)
     uint32_t* wide = TY_TRY_ALLOC(uint32_t, world->object_count);
     if (!wide)
         return ty_error_set(error, TY_NO_MEMORY, "no memory for %u objects", world->object_count);
-    uint32_t count = 0;
+    uint32_t count = 0, mesh_triangles = 0;
     ty_status status = TY_OK;
     for (uint32_t i = 0; i < world->object_count && status == TY_OK; i++)
     {
@@ -234,7 +262,7 @@ static ty_status attach_fast(ty_world* world, ty_error* error)
         if (moves)
             attach(world, object, ty_trace_create_moving_geometry(world, object), i);
         else if (!object->aggregate && box_area(object) > small)
-            attach(world, object, create_instance_geometry(world, object, 0), i);
+            attach(world, object, create_plain_geometry(world, object, &mesh_triangles), i);
         else
             wide[count++] = i;
     }

@@ -4,16 +4,20 @@
 
 // --- which hits a ray passes through ---
 
-static void find_object(const ty_world* world, uint32_t geometry, uint32_t* object, uint32_t* instance)
+// By Embree's numbers of a hit: of the instance and of what is below it, or of a mesh that is no instance.
+static void find_object(const ty_world* world, uint32_t outer, uint32_t inner, uint32_t* object, uint32_t* instance)
 {
-    *object = geometry;
-    *instance = 0;
     if (world->path == TY_TRACE_REFERENCE)
     {
-        const ty_trace_object* found = ty_trace_object_of(world, geometry);
+        const ty_trace_object* found = ty_trace_object_of(world, outer);
         *object = found->index;
-        *instance = geometry - found->first;
+        *instance = outer - found->first;
+        return;
     }
+    bool is_mesh = outer == RTC_INVALID_GEOMETRY_ID;
+    *object = is_mesh ? inner : outer;
+    // Our own levels leave the instance as the geometry; a prototype's only geometry is 0.
+    *instance = is_mesh ? 0 : inner;
 }
 
 void ty_trace_filter(const struct RTCFilterFunctionNArguments* args)
@@ -26,7 +30,7 @@ void ty_trace_filter(const struct RTCFilterFunctionNArguments* args)
     const ty_ray* ray = context->ray;
     uint32_t object = context->object, instance = context->instance;
     if (object == TY_NONE)
-        find_object(context->world, context->embree.instID[0], &object, &instance);
+        find_object(context->world, context->embree.instID[0], hit->geomID, &object, &instance);
     if (ray->skip_object == object && ray->skip_instance == instance && local->tfar < ray->skip_distance)
         args->valid[0] = 0;
     // In the prototype's space: the sign of n.d is that of the world's, for any map, since n goes by the inverse
@@ -161,9 +165,8 @@ static bool intersect_rest(const ty_world* world, const ty_ray* ray, float t_max
     if (ray_hit.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return false;
     uint32_t object, instance;
-    find_object(world, ray_hit.hit.instID[0], &object, &instance);
-    // Our own levels leave the instance as the geometry; a prototype's only geometry is 0.
-    fill_hit(&ray_hit, object, world->path == TY_TRACE_FAST ? ray_hit.hit.geomID : instance, ray->time, hit);
+    find_object(world, ray_hit.hit.instID[0], ray_hit.hit.geomID, &object, &instance);
+    fill_hit(&ray_hit, object, instance, ray->time, hit);
     return true;
 }
 

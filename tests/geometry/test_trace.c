@@ -361,6 +361,64 @@ static void fast_path_cuts_nothing(void** state)
     ty_aggregate_destroy(heap);
 }
 
+// Meshes that stand where they are and are no instances: found, skipped, masked and seen from outside only like those.
+static void meshes_are_like_instances(void** state)
+{
+    (void)state;
+    ty_mesh *torus = make_torus(24, 12), *sphere = make_sphere(24, 15);
+    ty_affine small = ty_affine_from_trs((ty_vec3){0.5f, 0.2f, 0.1f}, ty_quat_identity(), (ty_vec3){0.7f, 0.6f, 0.5f});
+    ty_mesh_transform(sphere, &small);
+    ty_affine identity = ty_affine_identity();
+    ty_object_flags unlit = {.closed_subsurface = true, .mask = TY_MASK_OPAQUE & ~TY_MASK_SHADOW};
+    ty_world* world[2];
+    for (int path = 0; path < 2; path++)
+    {
+        ty_world_def def = {.path = (ty_trace_path)path};
+        ty_error error;
+        uint32_t object, prototype;
+        assert_int_equal(ty_world_create(&def, &world[path], &error), TY_OK);
+        assert_int_equal(ty_world_add_prototype(world[path], torus, &prototype, &error), TY_OK);
+        assert_int_equal(
+            ty_world_add_object(world[path], prototype, ty_motion_at_rest(&identity), opaque, &object, &error), TY_OK);
+        assert_int_equal(ty_world_add_prototype(world[path], sphere, &prototype, &error), TY_OK);
+        assert_int_equal(
+            ty_world_add_object(world[path], prototype, ty_motion_at_rest(&identity), unlit, &object, &error), TY_OK);
+        assert_int_equal(ty_world_commit(world[path], &error), TY_OK);
+    }
+    ty_rng rng = ty_rng_make((ty_seed){16}, 0, 0);
+    int hits[2] = {0}, occluded = 0;
+    for (int i = 0; i < RAYS; i++)
+    {
+        ty_ray ray = random_ray(&rng, i);
+        ray.t_max = i % 3 ? TY_FLOAT_MAX : 0.5f;
+        ray.flags = i % 5 < 2 ? TY_RAY_FRONT_ONLY : TY_RAY_PLAIN;
+        ray.mask = i % 7 < 2 ? TY_MASK_SHADOW : TY_MASK_DIFFUSE;
+        if (i % 4 == 0)
+        {
+            ray.skip_object = i / 4 % 2;
+            ray.skip_instance = 0;
+            ray.skip_distance = i % 8 ? 0.4f : TY_FLOAT_MAX;
+        }
+        ty_hit hit[2];
+        memset(hit, 0, sizeof hit);
+        bool found = ty_world_intersect(world[0], &ray, &hit[0]);
+        assert_int_equal(found, ty_world_intersect(world[1], &ray, &hit[1]));
+        assert_memory_equal(&hit[0], &hit[1], sizeof hit[0]);
+        bool dark = ty_world_occluded(world[0], &ray);
+        assert_int_equal(dark, ty_world_occluded(world[1], &ray));
+        occluded += dark;
+        if (!found)
+            continue;
+        hits[hit[0].object]++;
+        assert_true(hit[0].object == 0 || ray.mask != TY_MASK_SHADOW);
+    }
+    assert_true(hits[0] > RAYS / 20 && hits[1] > RAYS / 20 && occluded > RAYS / 10);
+    ty_world_destroy(world[0]);
+    ty_world_destroy(world[1]);
+    ty_mesh_destroy(torus);
+    ty_mesh_destroy(sphere);
+}
+
 // The kernels of every width give the same bits.
 static void widths_are_one(void** state)
 {
@@ -540,6 +598,7 @@ int main(void)
         cmocka_unit_test(far_from_the_origin),
         cmocka_unit_test(fast_path_cuts_nothing),
         cmocka_unit_test(widths_are_one),
+        cmocka_unit_test(meshes_are_like_instances),
         cmocka_unit_test(horizons_hold),
         cmocka_unit_test(numbering),
         cmocka_unit_test(bad_input),
