@@ -143,12 +143,3 @@ void ty_world_interpolate_attribute(const ty_world* world, const ty_surface_poin
         for (size_t i = 0; i < width; i++)
             out[i] += attribute->values[c.v[corner] * width + i] * c.w[corner];
 }
-
-// Units in the last place as in C. Waechter and N. Binder 2019, "A fast and robust method for avoiding
-// self-intersection", Ray Tracing Gems ch. 6, but of all that went into the position: under a rotated instance and on a
-// large triangle the error of every axis comes from there. 32 of them; rays begin to fail at 2. The floor is set for
-// scenes of millimetres (half a micrometre).
-ty_vec3 ty_offset_origin(const ty_surface_point* p, ty_vec3 n)
-{
-    return ty_mad(p->position, n, ty_max(p->reach * 0x1p-18f, 0x1p-21f));
-}

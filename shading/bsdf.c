@@ -202,26 +202,21 @@ static void skip_attached_shadow(const ty_bsdf* bsdf, ty_vec3 wi, float u, ty_ra
 void ty_bsdf_spawn(const ty_bsdf* bsdf, ty_vec3 wi, float u, ty_ray* ray)
 {
     const ty_surface_point* p = &bsdf->point;
-    *ray = (ty_ray){
-        .origin = ty_offset_origin(p, ty_dot(wi, p->ng) >= 0.0f ? p->ng : ty_neg(p->ng)),
-        .direction = wi,
-        .t_max = TY_FLOAT_MAX,
-        .flags = TY_RAY_FRONT_ONLY,
-        .skip_object = TY_NONE,
-        .skip_instance = TY_NONE,
-        .mask = TY_MASK_ALL,
-        .time = p->time,
-    };
-    bool below = ty_dot(wi, bsdf->frame.n) < 0.0f;
-    // What leaves a convex body on its outer side cannot meet it again, the facets of its mesh apart.
-    bool outwards = bsdf->kind == TY_BSDF_CDRF_LOCAL || ty_dot(wi, p->ns) > 0.0f;
-    // From elsewhere, what leaves above the horizon of its triangle cannot either.
-    if ((p->convex && outwards) || ty_dot(wi, p->ng) > p->horizon)
-    {
-        ray->skip_object = p->object;
-        ray->skip_instance = p->instance;
-        ray->skip_distance = TY_FLOAT_MAX;
-    }
-    else if (bsdf->kind == TY_BSDF_CDRF_LOCAL && below)
+    bool local = bsdf->kind == TY_BSDF_CDRF_LOCAL;
+    float side = ty_dot(wi, p->ng), distance = ty_offset_distance(p);
+    // What leaves above the horizon of its triangle cannot meet the instance again; nor can what leaves a convex body
+    // on its outer side, the facets of its mesh apart.
+    bool leaves = side > p->horizon || (p->convex && (local || ty_dot(wi, p->ns) > 0.0f));
+    ray->origin = ty_mad(p->position, p->ng, side >= 0.0f ? distance : -distance);
+    ray->t_min = 0.0f;
+    ray->direction = wi;
+    ray->t_max = TY_FLOAT_MAX;
+    ray->flags = TY_RAY_FRONT_ONLY;
+    ray->skip_object = leaves ? p->object : TY_NONE;
+    ray->skip_instance = leaves ? p->instance : TY_NONE;
+    ray->skip_distance = TY_FLOAT_MAX;
+    ray->mask = TY_MASK_ALL;
+    ray->time = p->time;
+    if (local && !leaves && ty_dot(wi, bsdf->frame.n) < 0.0f)
         skip_attached_shadow(bsdf, wi, u, ray);
 }

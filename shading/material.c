@@ -234,17 +234,27 @@ void ty_material_prepare(const ty_material* material, const ty_shading_context* 
     ty_material_prepare_within(material, context, point, wo, 1.0f, out);
 }
 
-void ty_material_prepare_within(const ty_material* material, const ty_shading_context* context,
-                                const ty_surface_point* point, ty_vec3 wo, float outside, ty_bsdf* out)
+// What is not set is not read of a Lambert surface.
+static void prepare_matte(const ty_material* material, const ty_shading_context* context, const ty_surface_point* point,
+                          ty_vec3 wo, ty_bsdf* out)
 {
-    if (material->matte)
-    {
-        if (point != &out->point)
-            out->point = *point;
-        out->wo = wo;
-        ty_matte_prepare(material, context, out);
-        return;
-    }
+    if (point != &out->point)
+        out->point = *point;
+    out->kind = TY_BSDF_MATTE;
+    out->material = material;
+    out->wo = wo;
+    ty_shading_frame_prepare(material, context, out);
+    out->color = material->base_is_constant
+                     ? material->base_color
+                     : ty_clamp_color(ty_input_color(&material->surface.base_color, context, point));
+    out->emission = ty_rgb_grey(0.0f);
+    if (material->emissive && out->entering)
+        out->emission = ty_material_emission(material, context, point);
+}
+
+static void prepare_layers(const ty_material* material, const ty_shading_context* context,
+                           const ty_surface_point* point, ty_vec3 wo, float outside, ty_bsdf* out)
+{
     *out = (ty_bsdf){.material = material, .point = *point, .wo = wo, .outside = outside};
     ty_shading_frame_prepare(material, context, out);
     switch (material->model)
@@ -256,4 +266,13 @@ void ty_material_prepare_within(const ty_material* material, const ty_shading_co
         ty_cdrf_prepare(material, context, out);
         break;
     }
+}
+
+void ty_material_prepare_within(const ty_material* material, const ty_shading_context* context,
+                                const ty_surface_point* point, ty_vec3 wo, float outside, ty_bsdf* out)
+{
+    if (material->matte)
+        prepare_matte(material, context, point, wo, out);
+    else
+        prepare_layers(material, context, point, wo, outside, out);
 }

@@ -36,8 +36,6 @@ static inline ty_rgb ty_clamp_color(ty_rgb c)
     return ty_rgb_make(ty_clamp(c.r, 0, 1), ty_clamp(c.g, 0, 1), ty_clamp(c.b, 0, 1));
 }
 
-// out holds point and wo already, and nothing else.
-void ty_matte_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
 // out holds point, frame, wo, entering and bent already; all else is zero.
 void ty_surface_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
 void ty_cdrf_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
