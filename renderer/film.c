@@ -85,15 +85,13 @@ ty_pixel_sums ty_pixel_sums_make(uint32_t group_count)
 }
 
 // Nearest multiple of 2^-30, ties to even; clamped, which the caller may want to know.
-static inline int64_t fixed_from_float(float value, bool* clamped)
+static inline uint64_t fixed_from_float(float value, bool* clamped)
 {
-    double scaled = (double)value * TY_FILM_SCALE;
-    if (scaled > (double)TY_FILM_LIMIT || scaled < -(double)TY_FILM_LIMIT)
-    {
-        *clamped = true;
-        return scaled > 0.0 ? TY_FILM_LIMIT : -TY_FILM_LIMIT;
-    }
-    return __builtin_llrint(scaled);
+    double scaled = (double)value * TY_FILM_SCALE, limit = (double)TY_FILM_LIMIT;
+    double within = scaled < limit ? scaled : limit;
+    within = within > -limit ? within : -limit;
+    *clamped |= within != scaled;
+    return (uint64_t)__builtin_llrint(within);
 }
 
 static void add_first(ty_pixel_sums* sums, const ty_film_sample* sample, uint32_t index)
@@ -106,18 +104,28 @@ static void add_first(ty_pixel_sums* sums, const ty_film_sample* sample, uint32_
     sums->first_depth = sample->depth;
 }
 
-static void add_vector(uint64_t sum[3], float x, float y, float z)
+static inline bool add_vector(uint64_t sum[3], float x, float y, float z)
 {
     bool clamped = false;
-    sum[0] += (uint64_t)fixed_from_float(x, &clamped);
-    sum[1] += (uint64_t)fixed_from_float(y, &clamped);
-    sum[2] += (uint64_t)fixed_from_float(z, &clamped);
+    sum[0] += fixed_from_float(x, &clamped);
+    sum[1] += fixed_from_float(y, &clamped);
+    sum[2] += fixed_from_float(z, &clamped);
+    return clamped;
+}
+
+// 0, or nan where a component is infinite or nan.
+static inline float nought(float x, float y, float z)
+{
+    return 0.0f * x + 0.0f * y + 0.0f * z;
 }
 
 static bool is_finite(const ty_film_sample* s)
 {
-    return ty_rgb_is_finite(s->radiance) && (!s->hit || (ty_rgb_is_finite(s->albedo) && ty_is_finite3(s->normal) &&
-                                                         ty_is_finite3(s->position) && isfinite(s->depth)));
+    float sum = nought(s->radiance.r, s->radiance.g, s->radiance.b);
+    if (s->hit)
+        sum += nought(s->albedo.r, s->albedo.g, s->albedo.b) + nought(s->normal.x, s->normal.y, s->normal.z) +
+               nought(s->position.x, s->position.y, s->position.z) + 0.0f * s->depth;
+    return sum == 0.0f;
 }
 
 ty_sample_fate ty_pixel_sums_add(ty_pixel_sums* sums, const ty_film_sample* s, uint32_t index)
@@ -129,16 +137,13 @@ ty_sample_fate ty_pixel_sums_add(ty_pixel_sums* sums, const ty_film_sample* s, u
     if (s->hit)
     {
         add_first(sums, s, index);
-        add_vector(sums->normal, s->normal.x, s->normal.y, s->normal.z);
-        add_vector(sums->albedo, s->albedo.r, s->albedo.g, s->albedo.b);
+        (void)add_vector(sums->normal, s->normal.x, s->normal.y, s->normal.z);
+        (void)add_vector(sums->albedo, s->albedo.r, s->albedo.g, s->albedo.b);
     }
-    bool clamped = false, luminance_clamped = false;
-    sums->radiance[0] += (uint64_t)fixed_from_float(s->radiance.r, &clamped);
-    sums->radiance[1] += (uint64_t)fixed_from_float(s->radiance.g, &clamped);
-    sums->radiance[2] += (uint64_t)fixed_from_float(s->radiance.b, &clamped);
+    bool clamped = add_vector(sums->radiance, s->radiance.r, s->radiance.g, s->radiance.b), luminance_clamped = false;
     for (uint32_t g = 0; g < sums->group_count; ++g)
-        add_vector(sums->group[g], s->group[g].r, s->group[g].g, s->group[g].b);
-    int64_t y = fixed_from_float(ty_luminance(s->radiance), &luminance_clamped);
+        (void)add_vector(sums->group[g], s->group[g].r, s->group[g].g, s->group[g].b);
+    int64_t y = (int64_t)fixed_from_float(ty_luminance(s->radiance), &luminance_clamped);
     uint64_t magnitude = (uint64_t)(y < 0 ? -y : y);
     sums->luminance += (uint64_t)y;
     sums->luminance_sqr += (ty_u128)magnitude * magnitude;

@@ -234,12 +234,10 @@ static ty_rgb share(const ty_light_set* set, int emitter, unsigned visible, cons
     return ty_rgb_scale((ty_rgb){ratio(seen.r, all.r), ratio(seen.g, all.g), ratio(seen.b, all.b)}, factor);
 }
 
-static bool shape_meet(const ty_light* light, const ty_ray* ray, float* t)
+static __attribute__((noinline)) bool round_meet(const ty_light* light, const ty_ray* ray, float* t)
 {
     switch (light->kind)
     {
-    case TY_LIGHT_RECTANGLE:
-        return ty_light_rectangle_meet(light, ray, t);
     case TY_LIGHT_DISK:
         return ty_light_disk_meet(light, ray, t);
     case TY_LIGHT_CYLINDER:
@@ -264,15 +262,20 @@ static float shape_pdf(const ty_light* light, ty_vec3 from, ty_vec3 wi)
     }
 }
 
-static bool meets_shape(const ty_light* light, const ty_ray* ray, float t_max, const ty_light_view* view, float* t)
+static inline bool meets_shape(const ty_light* light, const ty_ray* ray, float t_max, const ty_light_view* view,
+                               float* t)
 {
-    return (light->visible & view->seen) && shape_meet(light, ray, t) && *t >= ray->t_min &&
-           (*t * TY_LIGHT_REACH < t_max || (!light->shadows && view->seen != TY_MASK_CAMERA));
+    if (!(light->visible & view->seen))
+        return false;
+    float limit = light->shadows || view->seen == TY_MASK_CAMERA ? t_max : INFINITY;
+    if (light->kind == TY_LIGHT_RECTANGLE)
+        return ty_light_rectangle_meet(light, ray, limit, t);
+    return round_meet(light, ray, t) && *t >= ray->t_min && *t * TY_LIGHT_REACH < limit;
 }
 
-// What a ray takes from a shape that it meets at t.
-static void add_shape(const ty_light_set* set, int index, const ty_ray* ray, float t, const ty_light_view* view,
-                      const ty_rgb* beta, ty_film_sample* out)
+// What a ray takes from a shape that it meets at t. Seldom: kept out of the way of asking.
+static __attribute__((noinline)) void add_shape(const ty_light_set* set, int index, const ty_ray* ray, float t,
+                                                const ty_light_view* view, const ty_rgb* beta, ty_film_sample* out)
 {
     const ty_light* light = &set->lights[index];
     ty_rgb due = ty_rgb_mul(*beta, light->value);
@@ -286,8 +289,8 @@ static void add_shape(const ty_light_set* set, int index, const ty_ray* ray, flo
 }
 
 // out NULL: only asks.
-static bool shape_along(const ty_light_set* set, int index, const ty_ray* ray, float t_max, const ty_light_view* view,
-                        const ty_rgb* beta, ty_film_sample* out)
+static inline bool shape_along(const ty_light_set* set, int index, const ty_ray* ray, float t_max,
+                               const ty_light_view* view, const ty_rgb* beta, ty_film_sample* out)
 {
     float t;
     if (!meets_shape(&set->lights[index], ray, t_max, view, &t))
@@ -305,8 +308,9 @@ static bool box_met(const ty_light_node* node, const ty_ray* ray, ty_vec3 invers
     return enter <= leave * 1.00001f && leave >= 0.0f;
 }
 
-static bool shapes_by_place(const ty_light_set* set, const ty_light_node* nodes, const ty_ray* ray, float t_max,
-                            const ty_light_view* view, const ty_rgb* beta, ty_film_sample* out)
+static __attribute__((noinline)) bool shapes_by_place(const ty_light_set* set, const ty_light_node* nodes,
+                                                      const ty_ray* ray, float t_max, const ty_light_view* view,
+                                                      const ty_rgb* beta, ty_film_sample* out)
 {
     bool met = false;
     ty_vec3 d = ray->direction; // a zero would make nan of a border at the origin
@@ -367,17 +371,26 @@ static ty_rgb sky_along(const ty_light_set* set, int index, const ty_ray* ray, c
     return ty_rgb_mul(radiance, share(set, index, light->visible, view, pdf));
 }
 
-bool ty_light_set_along(const ty_light_set* set, const ty_ray* ray, float t, const ty_light_view* view,
-                        const ty_rgb* beta, ty_film_sample* out)
+// The lights all around, where nothing within t stands before them.
+static __attribute__((noinline)) void add_skies(const ty_light_set* set, const ty_light_selection* s, const ty_ray* ray,
+                                                float t, const ty_light_view* view, const ty_rgb* beta,
+                                                ty_film_sample* out)
 {
-    const ty_light_selection* s = &set->selections[view->from.link];
-    bool met = shapes_along(set, s, ray, t, view, beta, out);
     for (int i = 0; i < s->sky_count; ++i)
     {
         const ty_light* sky = &set->lights[s->skies[i]];
         if (t == TY_FLOAT_MAX || (!sky->shadows && view->seen != TY_MASK_CAMERA))
             ty_film_sample_add(out, sky->group, ty_rgb_mul(*beta, sky_along(set, s->skies[i], ray, view)));
     }
+}
+
+bool ty_light_set_along(const ty_light_set* set, const ty_ray* ray, float t, const ty_light_view* view,
+                        const ty_rgb* beta, ty_film_sample* out)
+{
+    const ty_light_selection* s = &set->selections[view->from.link];
+    bool met = shapes_along(set, s, ray, t, view, beta, out);
+    if (t == TY_FLOAT_MAX || s->shadowless_skies)
+        add_skies(set, s, ray, t, view, beta, out);
     return met;
 }
 

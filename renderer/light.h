@@ -24,6 +24,7 @@ typedef struct ty_light
                                    // directional: n towards the light; environment: its axes
     float half_size[2];            // m, rectangle; cylinder: half length first
     float area;                    // m^2
+    float far_sqr;                 // m^2, rectangle: from this distance of the centre on it is sampled by area
     float radius;                  // m
     ty_rgb horizon, ground;        // sky, value being the zenith
     float falloff;                 // sky
@@ -81,6 +82,7 @@ typedef struct ty_light_selection
     ty_light_tree* shaping; // the same by their places, where they are many, else NULL
     int* skies;             // lights seen where a ray meets nothing
     int sky_count;
+    bool shadowless_skies; // some of them are also seen where a ray meets something
 } ty_light_selection;
 
 typedef struct ty_light_set
@@ -188,15 +190,18 @@ float ty_light_directional_pdf(const ty_light* light); // within its disc
 void ty_light_rectangle_init(ty_light* light, const ty_light_def* def);
 bool ty_light_rectangle_sample(const ty_light* light, ty_vec3 p, ty_vec2 u, ty_light_sample* out);
 float ty_light_rectangle_pdf(const ty_light* light, ty_vec3 p, ty_vec3 wi); // wi meets it
-// The lit side alone. Every ray asks, and few are answered yes: one test of all conditions together.
-static inline bool ty_light_rectangle_meet(const ty_light* light, const ty_ray* ray, float* t)
+// The lit side alone, between t_min and limit, in one place because every ray asks: mostly it ends before the plane or
+// goes away from it.
+static inline bool ty_light_rectangle_meet(const ty_light* light, const ty_ray* ray, float limit, float* t)
 {
     float cosine = -ty_dot(ray->direction, light->frame.n);
     ty_vec3 d = ty_sub(ray->origin, light->center);
     *t = ty_dot(d, light->frame.n) / cosine;
+    if (!((int)(*t > 0.0f) & (int)(*t >= ray->t_min) & (int)(*t * TY_LIGHT_REACH < limit)))
+        return false;
     ty_vec3 q = ty_mad(d, ray->direction, *t);
-    return (int)(cosine > 0.0f) & (int)(*t > 0.0f) & (int)(fabsf(ty_dot(q, light->frame.t)) <= light->half_size[0]) &
-           (int)(fabsf(ty_dot(q, light->frame.b)) <= light->half_size[1]);
+    return cosine > 0.0f && fabsf(ty_dot(q, light->frame.t)) <= light->half_size[0] &&
+           fabsf(ty_dot(q, light->frame.b)) <= light->half_size[1];
 }
 
 void ty_light_disk_init(ty_light* light, const ty_light_def* def);

@@ -63,7 +63,10 @@ static void list_met(ty_light_selection* s, const ty_light_set* set, const bool*
         }
         else if (light->kind == TY_LIGHT_ENVIRONMENT || light->kind == TY_LIGHT_SKY ||
                  (light->kind == TY_LIGHT_DIRECTIONAL && light->one_minus_cos > 0.0f))
+        {
             s->skies[s->sky_count++] = i;
+            s->shadowless_skies = s->shadowless_skies || !light->shadows;
+        }
     }
     if (s->shape_count > FEW_SHAPES)
         s->shaping = ty_light_tree_create(leaves, s->shape_count, set->light_count);

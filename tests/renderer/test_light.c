@@ -63,8 +63,12 @@ static void check_rectangle(const ty_light* light, ty_vec3 p)
             ty_ray ray = ray_make(p, s.wi);
             if (i > 0 && j > 0 && i < N - 1 && j < N - 1) // rounding may carry the rim outside
             {
-                assert_true(ty_light_rectangle_meet(light, &ray, &t));
+                assert_true(ty_light_rectangle_meet(light, &ray, INFINITY, &t));
                 assert_true(fabsf(t - s.distance) < 1e-4f * s.distance);
+                assert_true(ty_light_rectangle_meet(light, &ray, 1.001f * s.distance, &t));
+                assert_false(ty_light_rectangle_meet(light, &ray, 0.999f * s.distance, &t));
+                ray.t_min = 1.001f * s.distance;
+                assert_false(ty_light_rectangle_meet(light, &ray, INFINITY, &t));
             }
             inverse += 1.0 / (double)s.pdf / (N * N);
         }
@@ -117,7 +121,7 @@ static void test_near_rectangle_is_uniform_in_solid_angle(void** state)
     assert_false(ty_light_rectangle_sample(&light, behind, (ty_vec2){0.5f, 0.5f}, &s));
     ty_ray ray = ray_make(behind, light.frame.n);
     float t;
-    assert_false(ty_light_rectangle_meet(&light, &ray, &t));
+    assert_false(ty_light_rectangle_meet(&light, &ray, INFINITY, &t));
 }
 
 static void test_sphere_outside_and_inside(void** state)

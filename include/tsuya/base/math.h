@@ -198,7 +198,7 @@ static inline float ty_rgb_max(ty_rgb c)
 }
 static inline bool ty_rgb_is_black(ty_rgb c)
 {
-    return c.r == 0.0f && c.g == 0.0f && c.b == 0.0f;
+    return fabsf(c.r) + fabsf(c.g) + fabsf(c.b) == 0.0f; // one comparison
 }
 static inline bool ty_rgb_is_finite(ty_rgb c)
 {
