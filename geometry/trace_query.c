@@ -58,18 +58,6 @@ static RTCFilterFunctionN top_filter(const ty_world* world, const ty_ray* ray)
     return front_only || skip ? ty_trace_filter : NULL;
 }
 
-// What the surface at the hit is made from: fetched while the rest of the scene is still being traced.
-static void fetch_surface(const ty_world* world, const ty_trace_object* object, uint32_t instance, uint32_t triangle)
-{
-    const ty_trace_prototype* prototype = &world->prototypes[ty_trace_prototype_of(object, instance)];
-    __builtin_prefetch(&prototype->mesh->triangles[triangle]);
-    if (!object->aggregate)
-        return;
-    const ty_affine* map = &object->aggregate->transforms[instance];
-    __builtin_prefetch(&map->x);
-    __builtin_prefetch(&map->t);
-}
-
 // --- rays ---
 
 static struct RTCRay make_ray(ty_vec3 origin, float t_min, ty_vec3 direction, float t_max)
@@ -143,7 +131,6 @@ void ty_trace_wide_intersect(const ty_world* world, const ty_trace_wide* wide, c
     ray_hit->hit.primID = q.triangle;
     ray_hit->hit.geomID = q.instance - object->first;
     ray_hit->hit.instID[0] = object->index;
-    fetch_surface(world, object, ray_hit->hit.geomID, q.triangle);
 }
 
 bool ty_trace_wide_occluded(const ty_world* world, const ty_trace_wide* wide, const ty_ray* ray,
