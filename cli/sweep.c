@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `tsuya sweep`: one scene over values of its parameters.
-#include "sweep.h"
+#include "sweep_view.h"
 #include <stdio.h>
 #include <string.h>
 #include <tsuya/base/log.h>
@@ -173,6 +173,26 @@ static ty_status judge(const ty_sweep_job* job)
     return status;
 }
 
+static ty_status write_overview(const ty_sweep_job* job)
+{
+    ty_error error;
+    char* exr = ty_string_format("%s/sheet.exr", job->folder);
+    char* png = ty_string_format("%s/sheet.png", job->folder);
+    ty_status status = ty_sweep_sheet(job, exr, png, &error);
+    if (status != TY_OK)
+    {
+        ty_log_error(&error);
+    }
+    else
+    {
+        printf("%s\n%s\n", exr, png);
+        status = ty_output_finish();
+    }
+    ty_free(exr);
+    ty_free(png);
+    return status;
+}
+
 static ty_status run_cells(ty_sweep_job* job)
 {
     ty_status status = ty_sweep_check(job);
@@ -187,6 +207,7 @@ static ty_status run_cells(ty_sweep_job* job)
     }
     ty_status rendered = ty_sweep_render(job);
     status = ty_sweep_record_write(job);
+    status = status == TY_OK && rendered == TY_OK ? write_overview(job) : status;
     ty_status judged = judge(job);
     return rendered != TY_OK ? rendered : status != TY_OK ? status : judged;
 }

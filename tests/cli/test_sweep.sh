@@ -75,6 +75,19 @@ expect 0 "$tsuya" info again.exr
 prints "display_window: [0, 0, 19, 15]"
 expect 0 "$tsuya" sweep scene.yaml --vary frame=1,9 -o frames --spp 1 --progress none
 
+# The sheet has a slot a cell and its words, and the same bytes every time.
+expect 0 "$tsuya" sweep scene.yaml --vary moisture=0.1,0.5 -o row --progress none
+prints row/sheet.png
+cp row/sheet.exr first.exr && cp row/sheet.png first.png
+expect 0 "$tsuya" sweep scene.yaml --vary moisture=0.1,0.5 -o row --progress none
+same row/sheet.exr first.exr
+same row/sheet.png first.png
+expect 0 "$tsuya" info row/sheet.exr
+prints "data_window: [0, 0, 123, 123]"
+expect 0 "$tsuya" sweep scene.yaml --vary moisture=0.1,0.5 -o row --progress none --exposure 1
+same row/sheet.exr first.exr
+cmp -s row/sheet.png first.png && fail "the sheet was not developed as asked for"
+
 # A cell that fails is told and the others are made; the status is its own.
 printf 'tsuya: 1\nkind: roots\ncount: 2\nbranch: { levels: 1 }\nradius: 3\ntip: 2\ndetail: 2\n' >roots.yaml
 sed -e 's/unused: .*/roots: { mesh: roots.yaml }/' -e 's/mesh: ball/mesh: roots/' scene.yaml >rooted.yaml
@@ -82,6 +95,7 @@ expect 3 "$tsuya" sweep rooted.yaml --vary assets.roots.mesh.tip=2,4,2.5 -o fail
 says "tip: 4 mm; it is at most the radius"
 says "2 of 3 cells are complete"
 [ "$(ls failing/*=*.exr | wc -l)" -eq 2 ] || fail "the cells beside a failing one are missing"
+[ -s failing/sheet.png ] || fail "a sheet of the others is missing"
 grep -q 'at most the radius' failing/sweep.json || fail "the record does not tell the failure"
 
 # Mistakes, all before the first picture.

@@ -23,3 +23,7 @@ TY_CHECKED ty_status ty_image_read(const char* path, ty_image* out, ty_error* er
 TY_CHECKED ty_status ty_image_write(const char* path, const ty_image* image, int bits, ty_error* error);
 // The same into memory, owned by the caller; path gives the format and stands in messages.
 TY_CHECKED ty_status ty_image_encode(const char* path, const ty_image* image, int bits, ty_bytes* out, ty_error* error);
+
+// A smaller picture of at least 1 x 1 and at most the size of `image`: each pixel is the mean of the area that it
+// stands for. The caller frees out; TY_NO_MEMORY leaves it empty.
+TY_CHECKED ty_status ty_image_shrink(const ty_image* image, int width, int height, ty_image* out, ty_error* error);
