@@ -20,7 +20,6 @@ typedef struct ty_integrator
     uint32_t group_count;     // light groups of the film
     bool has_transparent;     // something light goes straight through
     bool has_media;           // clear bodies
-    bool shares;              // blocks of pixels use one another's paths
     ty_media media;           // those the camera is in
     uint32_t* first_instance; // by object: number of its instance 0, from 1 over the whole scene; owned
 } ty_integrator;
@@ -43,11 +42,5 @@ float ty_integrator_curvature(const ty_world* world, const ty_surface_point* poi
 // out has begun; the ray is the camera's.
 void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, const ty_ray* ray, ty_counters* counters,
                     ty_film_sample* out);
-// The same of a block of pixels at once, each with its sampler, ray and sample: where light comes to one of them by a
-// surface that is matte, it comes to the others by there as well. Only where the integrator shares.
-#define TY_PATH_BLOCK 4
-void ty_path_sample_block(const ty_integrator* in, const ty_sampler samplers[], const ty_ray rays[], int count,
-                          ty_counters* counters, ty_film_sample out[]);
-bool ty_path_can_share(const ty_integrator* in); // whether the scene allows it
 void ty_debug_sample(const ty_integrator* in, const ty_sampler* sampler, const ty_ray* ray, ty_counters* counters,
                      ty_film_sample* out);

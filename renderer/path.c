@@ -18,7 +18,8 @@ static bool survives(const ty_render_def* def, ty_path* p, float* u)
     return true;
 }
 
-bool ty_path_go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, float u, ty_path* p)
+// The way on after a sampled direction; the view is from where light was gathered. False = the path ends.
+static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, float u, ty_path* p)
 {
     p->beta = ty_rgb_mul(p->beta, sample->weight);
     if (!survives(&in->scene->render, p, &u))
@@ -42,7 +43,7 @@ static bool scatter(const ty_integrator* in, const ty_bsdf* bsdf, const float u[
     p->view.from = ty_path_light_point(in, bsdf);
     ty_path_direct_light(in, p, bsdf, &p->view.from, u + 4, &p->beta, out, counters);
     ty_bsdf_sample sample;
-    return ty_bsdf_sample_wi(bsdf, u[2], (ty_vec2){u[0], u[1]}, &sample) && ty_path_go_on(in, bsdf, &sample, u[3], p);
+    return ty_bsdf_sample_wi(bsdf, u[2], (ty_vec2){u[0], u[1]}, &sample) && go_on(in, bsdf, &sample, u[3], p);
 }
 
 // A translucent body under a coat, seen by the camera: light comes by both, and the way on is one of them. Choosing
@@ -77,14 +78,13 @@ static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_
     {
         p->beta = ty_rgb_scale(p->beta, 1.0f / chance);
         p->view.from = outside;
-        bool goes = shines && ty_path_go_on(in, &coat, &glint, u[3], p);
+        bool goes = shines && go_on(in, &coat, &glint, u[3], p);
         p->view.done = true;
         return goes;
     }
     p->beta = ty_rgb_scale(beta, 1.0f / (1.0f - chance));
     ty_bsdf_sample sample;
-    return lit && ty_bsdf_sample_wi(body, u[2], (ty_vec2){u[0], u[1]}, &sample) &&
-           ty_path_go_on(in, body, &sample, u[3], p);
+    return lit && ty_bsdf_sample_wi(body, u[2], (ty_vec2){u[0], u[1]}, &sample) && go_on(in, body, &sample, u[3], p);
 }
 
 // The next vertex of a path. False = the path ends.
@@ -181,8 +181,9 @@ static void meet_lights(const ty_integrator* in, float t, const ty_path* p, ty_f
         out->covered = true;
 }
 
-bool ty_path_find_surface(const ty_integrator* in, const ty_sampler* sampler, ty_path* p, ty_bsdf* bsdf,
-                          ty_counters* counters, ty_film_sample* out)
+// The surface where the path scatters next, past all it goes straight through. False = it left the scene.
+static bool find_surface(const ty_integrator* in, const ty_sampler* sampler, ty_path* p, ty_bsdf* bsdf,
+                         ty_counters* counters, ty_film_sample* out)
 {
     const ty_scene* scene = in->scene;
     for (; p->passed < TY_PATH_MAX_PASSED; ++p->passed)
@@ -217,7 +218,7 @@ bool ty_path_find_surface(const ty_integrator* in, const ty_sampler* sampler, ty
     return false;
 }
 
-void ty_path_begin(const ty_integrator* in, const ty_ray* ray, ty_path* p)
+static void begin(const ty_integrator* in, const ty_ray* ray, ty_path* p)
 {
     p->ray = *ray;
     p->cone = ty_cone_begin(in, ray);
@@ -242,30 +243,20 @@ static void add_emission(const ty_integrator* in, const ty_bsdf* bsdf, const ty_
                 ty_rgb_mul(ty_rgb_mul(p->beta, bsdf->emission), weight), out);
 }
 
-void ty_path_follow(const ty_integrator* in, const ty_sampler* sampler, ty_path* p, ty_bsdf* bsdf,
-                    ty_counters* counters, ty_film_sample* out)
-{
-    for (;;)
-    {
-        if (!ty_rgb_is_black(bsdf->emission))
-            add_emission(in, bsdf, p, out);
-        if (p->bounce == 0)
-            ty_integrator_record(in, bsdf, out);
-        if (p->bounce == in->scene->render.max_depth || !advance(in, sampler, bsdf, p, out, counters))
-            return;
-        counters->path_rays++;
-        p->bounce++;
-        if (!ty_path_find_surface(in, sampler, p, bsdf, counters, out))
-            return;
-    }
-}
-
 void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, const ty_ray* ray, ty_counters* counters,
                     ty_film_sample* out)
 {
     ty_path p;
     ty_bsdf bsdf;
-    ty_path_begin(in, ray, &p);
-    if (ty_path_find_surface(in, sampler, &p, &bsdf, counters, out))
-        ty_path_follow(in, sampler, &p, &bsdf, counters, out);
+    begin(in, ray, &p);
+    for (; find_surface(in, sampler, &p, &bsdf, counters, out); p.bounce++)
+    {
+        if (!ty_rgb_is_black(bsdf.emission))
+            add_emission(in, &bsdf, &p, out);
+        if (p.bounce == 0)
+            ty_integrator_record(in, &bsdf, out);
+        if (p.bounce == in->scene->render.max_depth || !advance(in, sampler, &bsdf, &p, out, counters))
+            return;
+        counters->path_rays++;
+    }
 }

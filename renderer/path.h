@@ -22,16 +22,6 @@ typedef struct ty_path
     ty_media media;       // the ray is in; last, because paths in air leave it untouched
 } ty_path;
 
-void ty_path_begin(const ty_integrator* in, const ty_ray* ray, ty_path* p);
-// The surface where the path scatters next, past all it goes straight through. False = it left the scene.
-bool ty_path_find_surface(const ty_integrator* in, const ty_sampler* sampler, ty_path* p, ty_bsdf* bsdf,
-                          ty_counters* counters, ty_film_sample* out);
-// The way on after a sampled direction; the view is from where light was gathered. False = the path ends.
-bool ty_path_go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sample* sample, float u, ty_path* p);
-// All that comes of a path from the surface it is at.
-void ty_path_follow(const ty_integrator* in, const ty_sampler* sampler, ty_path* p, ty_bsdf* bsdf,
-                    ty_counters* counters, ty_film_sample* out);
-
 // Where a surface gathers light, for choosing a light there.
 ty_light_point ty_path_light_point(const ty_integrator* in, const ty_bsdf* bsdf);
 

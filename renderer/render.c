@@ -48,9 +48,6 @@ static void integrator_init(ty_integrator* in, const ty_scene* scene, const ty_f
         in->has_transparent = in->has_transparent || (traits & TY_TRAIT_TRANSPARENT);
         in->has_media = in->has_media || (traits & TY_TRAIT_MEDIUM);
     }
-    in->shares = scene->render.share_paths && scene->render.integrator == TY_INTEGRATOR_PATH && ty_path_can_share(in);
-    if (scene->render.share_paths && !in->shares)
-        ty_log(TY_LOG_WARNING, "render.share_paths: not in this scene, which moves, lets light through or limits it");
     if (in->has_media)
         ty_path_find_media(scene, scene->camera.position, &in->media);
     in->first_instance = TY_ALLOC(uint32_t, scene->object_count);
@@ -102,20 +99,6 @@ static const ty_camera* camera_at(const ty_integrator* in, const ty_sampler* sam
     return moved;
 }
 
-// The camera's ray of a sample.
-static const ty_camera* camera_ray(const ty_integrator* in, const ty_sampler* sampler, int x, int y, ty_camera* moved,
-                                   ty_ray* ray)
-{
-    float u[4], time;
-    ty_sampler_4d(sampler, TY_GROUP_CAMERA, u);
-    float px = (float)x + 0.5f + ty_pixel_filter_sample(&in->filter, u[0]);
-    float py = (float)y + 0.5f + ty_pixel_filter_sample(&in->filter, u[1]);
-    const ty_camera* camera = camera_at(in, sampler, &time, moved);
-    *ray = ty_camera_ray(camera, px, py, (ty_vec2){u[2], u[3]});
-    ray->time = time;
-    return camera;
-}
-
 static void render_pixel(render* r, int x, int y, ty_counters* counters)
 {
     const ty_integrator* in = &r->integrator;
@@ -124,11 +107,17 @@ static void render_pixel(render* r, int x, int y, ty_counters* counters)
     ty_sampler sampler = ty_sampler_make(&in->sobol, in->scene->render.seed, x, y, (uint32_t)r->pass_begin);
     for (int s = r->pass_begin; s < r->pass_end; ++s)
     {
-        ty_camera moved;
-        ty_ray ray;
-        ty_film_sample sample;
+        float u[4];
         ty_sampler_set_sample(&sampler, (uint32_t)s);
-        const ty_camera* camera = camera_ray(in, &sampler, x, y, &moved, &ray);
+        ty_sampler_4d(&sampler, TY_GROUP_CAMERA, u);
+        float px = (float)x + 0.5f + ty_pixel_filter_sample(&in->filter, u[0]);
+        float py = (float)y + 0.5f + ty_pixel_filter_sample(&in->filter, u[1]);
+        ty_camera moved;
+        float time;
+        const ty_camera* camera = camera_at(in, &sampler, &time, &moved);
+        ty_ray ray = ty_camera_ray(camera, px, py, (ty_vec2){u[2], u[3]});
+        ray.time = time;
+        ty_film_sample sample;
         ty_film_sample_begin(&sample, in->group_count);
         if (debug)
             ty_debug_sample(in, &sampler, &ray, counters, &sample);
@@ -140,57 +129,6 @@ static void render_pixel(render* r, int x, int y, ty_counters* counters)
     }
     counters->camera_rays += (uint64_t)(r->pass_end - r->pass_begin);
     ty_film_commit(r->film, x, y, &sums);
-}
-
-static bool within(const int crop[4], int x, int y)
-{
-    return x >= crop[0] && x <= crop[2] && y >= crop[1] && y <= crop[3];
-}
-
-// Pixels (x, y) to (x + 1, y + 1) of even x and y, as far as the picture has them, so that a crop changes nothing:
-// those outside of it are traced for the others.
-static void render_block(render* r, int x, int y, ty_counters* counters)
-{
-    const ty_integrator* in = &r->integrator;
-    const ty_film_setup* setup = &r->film->setup;
-    ty_pixel_sums sums[TY_PATH_BLOCK];
-    ty_sampler samplers[TY_PATH_BLOCK];
-    int place[TY_PATH_BLOCK][2], count = 0;
-    for (int i = 0; i < TY_PATH_BLOCK; ++i)
-    {
-        int px = x + i % 2, py = y + i / 2;
-        if (px >= setup->size[0] || py >= setup->size[1])
-            continue;
-        place[count][0] = px;
-        place[count][1] = py;
-        sums[count] = ty_pixel_sums_make(r->film->group_count);
-        samplers[count++] = ty_sampler_make(&in->sobol, in->scene->render.seed, px, py, (uint32_t)r->pass_begin);
-    }
-    for (int s = r->pass_begin; s < r->pass_end; ++s)
-    {
-        ty_ray rays[TY_PATH_BLOCK];
-        ty_film_sample samples[TY_PATH_BLOCK];
-        ty_camera moved;
-        for (int i = 0; i < count; ++i)
-        {
-            ty_sampler_set_sample(&samplers[i], (uint32_t)s);
-            (void)camera_ray(in, &samplers[i], place[i][0], place[i][1], &moved, &rays[i]);
-            ty_film_sample_begin(&samples[i], in->group_count);
-        }
-        ty_path_sample_block(in, samplers, rays, count, counters, samples);
-        for (int i = 0; i < count; ++i)
-        {
-            if (samples[i].hit)
-                samples[i].depth = ty_camera_depth(&in->camera, samples[i].position);
-            ty_sample_fate fate = ty_pixel_sums_add(&sums[i], &samples[i], (uint32_t)s);
-            if (within(setup->crop, place[i][0], place[i][1]))
-                count_fate(counters, fate, place[i][0], place[i][1], s);
-        }
-    }
-    for (int i = 0; i < count; ++i)
-        if (within(setup->crop, place[i][0], place[i][1]))
-            ty_film_commit(r->film, place[i][0], place[i][1], &sums[i]);
-    counters->camera_rays += (uint64_t)count * (uint64_t)(r->pass_end - r->pass_begin);
 }
 
 static void show_progress(render* r, uint64_t done)
@@ -210,18 +148,11 @@ static void render_tiles(void* context, int64_t begin, int64_t end, int worker)
     {
         int left = r->tile_origin[0] + TILE * (int)(tile % r->tiles_across);
         int top = r->tile_origin[1] + TILE * (int)(tile / r->tiles_across);
-        int x0 = left < crop[0] ? crop[0] : left, x1 = left + TILE - 1 < crop[2] ? left + TILE - 1 : crop[2];
-        int y0 = top < crop[1] ? crop[1] : top, y1 = top + TILE - 1 < crop[3] ? top + TILE - 1 : crop[3];
-        bool shares = r->integrator.shares;
-        for (int y = shares ? y0 & ~1 : y0; y <= y1; y += shares ? 2 : 1)
-            for (int x = shares ? x0 & ~1 : x0; x <= x1; x += shares ? 2 : 1)
-            {
-                if (shares)
-                    render_block(r, x, y, &r->counters[worker]);
-                else
-                    render_pixel(r, x, y, &r->counters[worker]);
-            }
-        uint64_t samples = (uint64_t)(x1 - x0 + 1) * (uint64_t)(y1 - y0 + 1) * (uint64_t)(r->pass_end - r->pass_begin);
+        uint64_t pixels = 0;
+        for (int y = top < crop[1] ? crop[1] : top; y < top + TILE && y <= crop[3]; ++y)
+            for (int x = left < crop[0] ? crop[0] : left; x < left + TILE && x <= crop[2]; ++x, ++pixels)
+                render_pixel(r, x, y, &r->counters[worker]);
+        uint64_t samples = pixels * (uint64_t)(r->pass_end - r->pass_begin);
         uint64_t done = atomic_fetch_add_explicit(&r->pixel_samples, samples, memory_order_relaxed) + samples;
         if (r->progress && worker == 0)
             show_progress(r, done);

@@ -84,10 +84,6 @@ static const ty_param render_rows[] = {
      "which of many lights is sampled: by place, direction and power, or by power alone, for comparison", false},
     {"texture_filter", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_render_def, texture_filter),
      "average textures over what a ray stands for; false = look them up at the point", false},
-    {"share_paths", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_render_def, share_paths),
-     "2 by 2 pixels see by one another's paths where both ends are matte: less noise in each, alike in all four; only "
-     "where nothing moves or is transparent and no light is restricted or clamped",
-     false},
     {"indirect_clamp", TY_PARAM_FLOAT, "", 0, MANY, NULL, NULL, offsetof(ty_render_def, indirect_clamp),
      "most that one path may add after its second scattering, caustics included: less noise, but the picture loses "
      "that light; 0 = no limit",

@@ -96,7 +96,6 @@ typedef struct ty_render_def
     int samples;           // per pixel
     int max_depth;         // surface interactions of a path
     int roulette_depth;    // no Russian roulette before this many interactions
-    bool share_paths;      // four neighbouring pixels use one another's paths, where the scene allows it
     float indirect_clamp;  // largest channel of what one path adds after its second scattering; 0 = unlimited
     ty_seed seed;          // of this frame, with animate_seed
     bool animate_seed;     // other noise in every frame
