@@ -34,22 +34,6 @@ static const char script[] =
     "  set.querySelector('.view').onmousemove=function(e){if(mode=='wipe'){var r=i[0].getBoundingClientRect();\n"
     "    wipe(Math.min(1,Math.max(0,(e.clientX-r.left)/r.width)))}};choose('wipe')});\n";
 
-// RFC 4648.
-static void put_base64(FILE* file, const ty_bytes* bytes)
-{
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < bytes->size; i += 3)
-    {
-        size_t left = bytes->size - i;
-        uint32_t word = (uint32_t)bytes->data[i] << 16;
-        word |= left > 1 ? (uint32_t)bytes->data[i + 1] << 8 : 0;
-        word |= left > 2 ? bytes->data[i + 2] : 0;
-        const char four[4] = {digits[word >> 18], digits[word >> 12 & 63], left > 1 ? digits[word >> 6 & 63] : '=',
-                              left > 2 ? digits[word & 63] : '='};
-        fwrite(four, 1, 4, file);
-    }
-}
-
 static ty_status put_image(FILE* file, const char* name, const ty_image* image, ty_error* error)
 {
     ty_bytes bytes;
@@ -57,7 +41,7 @@ static ty_status put_image(FILE* file, const char* name, const ty_image* image, 
     if (status == TY_OK)
     {
         fprintf(file, "<img alt=\"%s\" src=\"data:image/png;base64,", name);
-        put_base64(file, &bytes);
+        ty_markup_base64(file, &bytes);
         fputs("\">", file);
     }
     ty_bytes_term(&bytes);

@@ -34,6 +34,21 @@ void ty_markup_text(FILE* file, const char* text)
     }
 }
 
+void ty_markup_base64(FILE* file, const ty_bytes* bytes)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < bytes->size; i += 3)
+    {
+        size_t left = bytes->size - i;
+        uint32_t word = (uint32_t)bytes->data[i] << 16;
+        word |= left > 1 ? (uint32_t)bytes->data[i + 1] << 8 : 0;
+        word |= left > 2 ? bytes->data[i + 2] : 0;
+        const char four[4] = {digits[word >> 18], digits[word >> 12 & 63], left > 1 ? digits[word >> 6 & 63] : '=',
+                              left > 2 ? digits[word & 63] : '='};
+        fwrite(four, 1, 4, file);
+    }
+}
+
 ty_status ty_markup_write(const char* path, ty_markup_fn* put, const void* context, ty_error* error)
 {
     static ty_atomic_file output; // paths: too large for the stack

@@ -176,20 +176,27 @@ static ty_status judge(const ty_sweep_job* job)
 static ty_status write_overview(const ty_sweep_job* job)
 {
     ty_error error;
-    char* exr = ty_string_format("%s/sheet.exr", job->folder);
-    char* png = ty_string_format("%s/sheet.png", job->folder);
-    ty_status status = ty_sweep_sheet(job, exr, png, &error);
+    char* paths[3];
+    static const char* const names[] = {"sheet.exr", "sheet.png", "index.html"};
+    for (int i = 0; i < 3; i++)
+    {
+        paths[i] = ty_string_format("%s/%s", job->folder, names[i]);
+    }
+    ty_status status = ty_sweep_sheet(job, paths[0], paths[1], &error);
+    status = status == TY_OK ? ty_sweep_report(job, paths[2], &error) : status;
     if (status != TY_OK)
     {
         ty_log_error(&error);
     }
     else
     {
-        printf("%s\n%s\n", exr, png);
+        printf("%s\n%s\n%s\n", paths[0], paths[1], paths[2]);
         status = ty_output_finish();
     }
-    ty_free(exr);
-    ty_free(png);
+    for (int i = 0; i < 3; i++)
+    {
+        ty_free(paths[i]);
+    }
     return status;
 }
 

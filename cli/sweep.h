@@ -10,7 +10,7 @@ typedef struct ty_sweep_cell
     char* output;                 // FOLDER/name.exr
     char* command;                // what makes the same bytes again
     char hash[33];                // of its scene
-    int size[2];                  // pixels of its picture
+    int corner[2], size[2];       // of its picture's window, pixels
     bool found;                   // was there, up to date, before this run
     bool done;                    // its picture is there
     ty_status status;

@@ -201,6 +201,8 @@ static ty_status check_cell(ty_sweep_job* job, int index, ty_error_list* told)
         memcpy(cell->hash, scene->hash, sizeof cell->hash);
         status = ty_render_plan(&job->render, scene);
         const int* window = job->render.setup.crop;
+        cell->corner[0] = window[0];
+        cell->corner[1] = window[1];
         cell->size[0] = window[2] - window[0] + 1;
         cell->size[1] = window[3] - window[1] + 1;
         status = status == TY_OK ? ty_render_find(&job->render, scene, &cell->found, &error) : status;

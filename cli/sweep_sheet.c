@@ -167,8 +167,11 @@ static void write_grid(const sheet* s, ty_image* out, const ink* k)
 static void write_words(const sheet* s, ty_image* out, const ink* k)
 {
     char text[TY_SWEEP_LABEL_MAX];
-    ty_sweep_title(s->job, text);
-    write_at(out, MARGIN, MARGIN + TEXT, (float)(s->size[0] - 2 * MARGIN), text, k->text);
+    const char* title = s->job->arguments->positional[0];
+    float right = (float)(s->size[0] - MARGIN), after = MARGIN + ty_label_width(title, TEXT) + 2 * GAP;
+    write_at(out, MARGIN, MARGIN + TEXT, right - MARGIN, title, k->text);
+    ty_sweep_fixed(s->job, text);
+    write_at(out, after, MARGIN + TEXT, right - after, text, k->faint);
     if (s->layout.grid)
     {
         write_grid(s, out, k);

@@ -90,9 +90,9 @@ void ty_sweep_cell_label(const ty_sweep_job* job, int cell, char out[TY_SWEEP_LA
     }
 }
 
-void ty_sweep_title(const ty_sweep_job* job, char out[TY_SWEEP_LABEL_MAX])
+void ty_sweep_fixed(const ty_sweep_job* job, char out[TY_SWEEP_LABEL_MAX])
 {
-    snprintf(out, TY_SWEEP_LABEL_MAX, "%s", job->arguments->positional[0]);
+    out[0] = '\0';
     for (int i = 0; i < job->base.options.variable_count; i++)
     {
         append(out, "   ", job->base.variables[i]);

@@ -23,7 +23,7 @@ void ty_sweep_row_label(const ty_sweep_job* job, const ty_sweep_layout* layout, 
 void ty_sweep_column_label(const ty_sweep_job* job, const ty_sweep_layout* layout, int column,
                            char out[TY_SWEEP_LABEL_MAX]);
 void ty_sweep_cell_label(const ty_sweep_job* job, int cell, char out[TY_SWEEP_LABEL_MAX]); // "moisture 0.2, vfov 20"
-void ty_sweep_title(const ty_sweep_job* job, char out[TY_SWEEP_LABEL_MAX]); // the scene and what is the same in all
+void ty_sweep_fixed(const ty_sweep_job* job, char out[TY_SWEEP_LABEL_MAX]); // overrides that are the same in all
 
 // Red, green and blue of a cell's picture, scene-linear ACEScg. The caller frees out.
 TY_CHECKED ty_status ty_sweep_picture(const ty_sweep_job* job, int cell, ty_image* out, ty_error* error);
@@ -31,3 +31,5 @@ TY_CHECKED ty_status ty_sweep_picture(const ty_sweep_job* job, int cell, ty_imag
 // Sheet of all cells as EXR and PNG.
 TY_CHECKED ty_status ty_sweep_sheet(const ty_sweep_job* job, const char* exr_path, const char* png_path,
                                     ty_error* error);
+// The report of all cells as one HTML file.
+TY_CHECKED ty_status ty_sweep_report(const ty_sweep_job* job, const char* path, ty_error* error);

@@ -9,6 +9,7 @@ pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 pkg_check_modules(OCIO REQUIRED IMPORTED_TARGET OpenColorIO)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR)
+pkg_check_modules(ZLIB REQUIRED IMPORTED_TARGET zlib)
 pkg_check_modules(YAML REQUIRED IMPORTED_TARGET yaml-0.1)
 pkg_check_modules(TINYGLTF REQUIRED IMPORTED_TARGET tinygltf)
 pkg_check_modules(JANSSON REQUIRED IMPORTED_TARGET jansson)
@@ -82,4 +83,18 @@ function(tsuya_module name)
     tsuya_compile_options(tsuya_${name})
     target_include_directories(tsuya_${name} PRIVATE image)
     target_link_libraries(tsuya_${name} PRIVATE ${module_LIBRARIES})
+endfunction()
+
+# Text files as strings of the program: tsuya_embed(name files...) sets <name>_source to a source that defines
+# `const char ty_<name>_<extension>[]` for each.
+function(tsuya_embed name)
+    set(output ${CMAKE_CURRENT_BINARY_DIR}/${name}_text.c)
+    list(TRANSFORM ARGN PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE inputs)
+    add_custom_command(
+        OUTPUT ${output}
+        COMMAND ${CMAKE_COMMAND} -DNAME=${name} "-DINPUTS=${inputs}" -DOUTPUT=${output} -P
+                ${PROJECT_SOURCE_DIR}/cmake/tsuya_embed.cmake
+        DEPENDS ${inputs} ${PROJECT_SOURCE_DIR}/cmake/tsuya_embed.cmake
+        VERBATIM)
+    set(${name}_source ${output} PARENT_SCOPE)
 endfunction()

@@ -12,6 +12,8 @@ export NO_COLOR=1
 failures=0
 
 fail() { echo "FAIL: $*" >&2; failures=$((failures + 1)); }
+# skip WHY: what was run so far holds, the rest cannot be run here.
+skip() { echo "skipped: $*" >&2; [ "$failures" -eq 0 ] && exit 77; exit 1; }
 # expect STATUS command...: runs it, output in out.txt and err.txt.
 expect() {
     local want=$1

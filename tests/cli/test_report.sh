@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+# Reports of sweeps and comparisons: one file that asks for nothing, and what a browser makes of it.
+cat >scene.yaml <<'Y'
+tsuya: 1
+film: { size: [96, 64] }
+render: { samples: 8, seed: 3 }
+vars: { moisture: 0.5 }
+camera: { position: [0, 0.05, 0.12], look_at: [0, 0.01, 0], vfov: 30 }
+assets:
+  ball: { shape: sphere, radius: 0.02, divisions: 16 }
+  floor: { shape: plane, size: [0.2, 0, 0.2] }
+materials:
+  skin: { model: cdrf, color: [0.8, 0.6, 0.4], moisture: $moisture }
+  grey: { model: surface, base_color: 0.3 }
+objects:
+  - { mesh: ball, material: skin, translate: [0, 0.02, 0] }
+  - { mesh: floor, material: grey }
+lights:
+  - { type: environment, radiance: 0.2 }
+  - { type: rectangle, center: [-0.1, 0.1, 0], target: [0, 0, 0], size: [0.05, 0.05], radiance: 4 }
+Y
+expect 0 "$tsuya" sweep scene.yaml --vary moisture=0.1:0.9:3 --vary lights.1.radiance=1:8:4:log -o grid --progress none
+prints grid/index.html
+grep -Eq '(src|href)="[^d]|url\(|https?:' grid/index.html && fail "the report points outside"
+[ "$(grep -c 'id="picture-' grid/index.html)" -eq 12 ] || fail "twelve pictures expected"
+cp grid/index.html first.html
+expect 0 "$tsuya" sweep scene.yaml --vary moisture=0.1:0.9:3 --vary lights.1.radiance=1:8:4:log -o grid --progress none
+same grid/index.html first.html
+
+# Nothing that a scene says becomes part of the page's own text.
+expect 0 "$tsuya" sweep scene.yaml --zip --vary 'objects.0.name=</script><b>,"<!--<script>"' -o hostile --progress none --spp 1
+grep -q '</script><b>' hostile/index.html && fail "a value is not escaped"
+[ "$(grep -c '<script' hostile/index.html)" -eq "$(grep -c '</script>' hostile/index.html)" ] || fail "scripts do not match"
+
+python3 "$TSUYA_SOURCE/tests/cli/report_pages.py" "$tsuya"
+case $? in
+0) ;;
+77) skip "no chromium and chromedriver" ;;
+*) fail "the report in the browser" ;;
+esac
