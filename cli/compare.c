@@ -311,7 +311,7 @@ static ty_status write_files(const compare_job* job, const ty_comparison* compar
                                  .limit_count = job->limit_count,
                                  .fault = comparison->differs ? comparison->difference : NULL,
                                  .failed = is_broken(job, comparison)};
-        status = ty_comparison_report(html, "tsuya compare", &entry, 1, error);
+        status = ty_compare_report(html, &entry, &job->def.develop, error);
     }
     return status;
 }
@@ -409,7 +409,7 @@ static const ty_option options[] = {
     {"view", 0, "V", "view (default: ACES 1.0 SDR)"},
     {"ocio", 0, "FILE", "OpenColorIO configuration"},
     {"heat", 0, "OUT.png", "the error of each pixel in colours: FLIP, black to white"},
-    {"html", 0, "OUT.html", "a page with pictures to flip and wipe, and the numbers"},
+    {"html", 0, "OUT.html", "a page in one file: exposure, swipe, flip, difference, numbers"},
     {"json", 0, NULL, "the result as JSON on standard output"},
 };
 

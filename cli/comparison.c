@@ -338,6 +338,18 @@ static ty_status display_flip(comparing* job, ty_compared_layer* layer, const ty
     return status;
 }
 
+// What a page can expose otherwise.
+static ty_status keep_light(comparing* job, ty_compared_layer* layer, const ty_image image[2])
+{
+    ty_status status = TY_OK;
+    for (int s = 0; s < 2 && status == TY_OK; s++)
+    {
+        status = copy_image(&image[s], &layer->light[s], job->error);
+        status = status == TY_OK ? convert(job, &layer->light[s], job->side[0]->color_space, "ACEScg") : status;
+    }
+    return status;
+}
+
 static ty_status hdr_flip(comparing* job, ty_compared_layer* layer, const ty_image image[2])
 {
     ty_image linear[2] = {{0}, {0}};
@@ -458,6 +470,10 @@ static ty_status measure(comparing* job, ty_compared_layer* layer, ty_image imag
     {
         status = display_flip(job, layer, image, !display);
     }
+    if (status == TY_OK && !display && job->def->keep)
+    {
+        status = keep_light(job, layer, image);
+    }
     if (status == TY_OK && !display && job->def->metrics[TY_METRIC_HDRFLIP])
     {
         status = hdr_flip(job, layer, image);
@@ -507,6 +523,8 @@ void ty_comparison_term(ty_comparison* comparison)
         ty_compared_layer* layer = &comparison->layers[i];
         ty_image_term(&layer->shown[0]);
         ty_image_term(&layer->shown[1]);
+        ty_image_term(&layer->light[0]);
+        ty_image_term(&layer->light[1]);
         ty_free(layer->error_map);
     }
     ty_free(comparison->layers);

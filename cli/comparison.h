@@ -30,6 +30,7 @@ typedef struct ty_compared_layer
     ty_pixel_errors worst;         // x, y in the picture's pixels
     double mean[2];                // of reference and test, over the pixels that count
     ty_image shown[2];             // display colours of reference and test, three channels, if kept
+    ty_image light[2];             // scene-linear ACEScg of both, if kept; NULL pixels where there is none
     float* error_map;              // [height][width], 0..1: FLIP of colours, else share of the largest difference
 } ty_compared_layer;
 
@@ -72,5 +73,8 @@ typedef struct ty_report_entry
     const char* fault; // why there is no comparison, NULL = none
     bool failed;
 } ty_report_entry;
+// The page of `compare`; view: how scene-linear pictures are shown.
+TY_CHECKED ty_status ty_compare_report(const char* path, const ty_report_entry* entry, const ty_develop_def* view,
+                                       ty_error* error);
 TY_CHECKED ty_status ty_comparison_report(const char* path, const char* title, const ty_report_entry* entries,
                                           int count, ty_error* error);

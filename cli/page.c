@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <tsuya/base/memory.h>
-#include <tsuya/image/metrics.h>
 #include <tsuya/image/pack.h>
 
 // The view's table: so many points a side over log2 of light.
@@ -26,26 +25,23 @@ enum
 
 extern const char ty_page_html[], ty_page_css[], ty_page_js[];
 
-void ty_page_begin(ty_page* page, const char* kind, const char* title, const ty_develop_def* view)
+void ty_page_begin(ty_page* page, const char* kind, const char* title, const ty_develop_def* view,
+                   const bool metrics[TY_METRIC_COUNT])
 {
+    static const char* const shown[TY_METRIC_COUNT] = {"RMSE",     "relMSE", "trimmed relMSE", "MAE",
+                                                       "PSNR, dB", "max",    "FLIP",           "HDR-FLIP"};
     *page = (ty_page){.data = json_object(), .view = *view, .title = title};
-    json_t *metrics = json_array(), *names = json_object();
-    static const struct
+    json_t *list = json_array(), *names = json_object();
+    for (int m = 0; m < TY_METRIC_COUNT; m++)
     {
-        ty_metric metric;
-        const char* name;
-    } shown[] = {{TY_METRIC_RMSE, "RMSE"},
-                 {TY_METRIC_RELMSE, "relMSE"},
-                 {TY_METRIC_MAE, "MAE"},
-                 {TY_METRIC_PSNR, "PSNR, dB"},
-                 {TY_METRIC_FLIP, "FLIP"}};
-    for (int i = 0; i < TY_PARAM_COUNT(shown); i++)
-    {
-        json_array_append_new(metrics, json_string(ty_metric_name(shown[i].metric)));
-        json_object_set_new(names, ty_metric_name(shown[i].metric), json_string(shown[i].name));
+        if (metrics[m])
+        {
+            json_array_append_new(list, json_string(ty_metric_name((ty_metric)m)));
+            json_object_set_new(names, ty_metric_name((ty_metric)m), json_string(shown[m]));
+        }
     }
     json_object_set_new(page->data, "kind", json_string(kind));
-    json_object_set_new(page->data, "metrics", metrics);
+    json_object_set_new(page->data, "metrics", list);
     json_object_set_new(page->data, "metricNames", names);
     json_object_set_new(page->data, "pictures", json_array());
     json_object_set_new(page->data, "pairs", json_array());

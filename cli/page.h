@@ -3,7 +3,7 @@
 // with their measures. cli/page/ holds what it looks like and does.
 #pragma once
 #include "cli.h"
-#include <tsuya/image/image.h>
+#include <tsuya/image/metrics.h>
 
 typedef enum ty_page_kind
 {
@@ -22,8 +22,9 @@ typedef struct ty_page
     const char* title;   // borrowed
 } ty_page;
 
-// An empty page of that kind: "sweep" or "compare". End it with ty_page_term.
-void ty_page_begin(ty_page* page, const char* kind, const char* title, const ty_develop_def* view);
+// An empty page of that kind, "sweep" or "compare", whose table shows these metrics. End it with ty_page_term.
+void ty_page_begin(ty_page* page, const char* kind, const char* title, const ty_develop_def* view,
+                   const bool metrics[TY_METRIC_COUNT]);
 void ty_page_term(ty_page* page);
 
 // How many pixels a side become one, so that pictures of that size are clear and the file stays within bounds.

@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <tsuya/base/memory.h>
-#include <tsuya/image/metrics.h>
 
 // Pixels that are compared with every cell as reference; beyond it only with the sweep's own.
 #define MOST_COMPARED 40e6
@@ -240,7 +239,12 @@ ty_status ty_sweep_report(const ty_sweep_job* job, const char* path, ty_error* e
     reporting r = {.job = job, .error = error};
     r.linear = TY_ALLOC(ty_image, count);
     r.shown = TY_ALLOC(ty_image, count);
-    ty_page_begin(&r.page, "sweep", job->arguments->positional[0], &job->render.develop);
+    static const bool metrics[TY_METRIC_COUNT] = {[TY_METRIC_RMSE] = true,
+                                                  [TY_METRIC_RELMSE] = true,
+                                                  [TY_METRIC_MAE] = true,
+                                                  [TY_METRIC_PSNR] = true,
+                                                  [TY_METRIC_FLIP] = true};
+    ty_page_begin(&r.page, "sweep", job->arguments->positional[0], &job->render.develop, metrics);
     ty_status status = fill(&r);
     status = status == TY_OK ? ty_page_write(&r.page, path, error) : status;
     for (int i = 0; i < count; i++)

@@ -92,7 +92,7 @@ void ty_sweep_cell_label(const ty_sweep_job* job, int cell, char out[TY_SWEEP_LA
 
 void ty_sweep_fixed(const ty_sweep_job* job, char out[TY_SWEEP_LABEL_MAX])
 {
-    out[0] = '\0';
+    snprintf(out, TY_SWEEP_LABEL_MAX, "%s", job->base.options.quick ? "quick" : "");
     for (int i = 0; i < job->base.options.variable_count; i++)
     {
         append(out, "   ", job->base.variables[i]);

@@ -160,7 +160,7 @@ function makeCell(index) {
   const cell = cells[index], picture = cell.picture === null ? null : data.pictures[cell.picture];
   const button = element('button', { type: 'button', className: 'cell', id: 'cell-' + index, tabIndex: -1 });
   const width = picture ? Math.min(THUMB, Math.max(picture.width, 160)) : 220;
-  button.style.width = `min(${width}px, 44vw)`;
+  button.style.setProperty('--natural', width + 'px');
   button.setAttribute('aria-label', cell.label + (cell.fault ? ', failed' : ''));
   if (picture) {
     const canvas = element('canvas', {});
@@ -179,6 +179,7 @@ function makeCell(index) {
 }
 function makeGrid() {
   const { rows, columns, grid } = data.layout, table = $('grid');
+  table.style.setProperty('--columns', columns);
   if (grid) {
     const titled = rows > 1 || data.layout.rowTitle;
     const head = element('tr', {}), top = element('tr', {});
@@ -420,7 +421,7 @@ function rowsOf() {
   return cells.map((cell, i) => ({ reference, test: i }));
 }
 function makeTable() {
-  if (!data.pairs.length && data.kind !== 'sweep') { $('table').closest('section').hidden = true; return; }
+  if (!data.pairs.length && data.kind !== 'sweep') { $('measures').hidden = true; return; }
   const columns = data.axes.map((name, i) => ({ name, text: row => cells[row.test].values[i] }));
   for (const name of data.metrics)
     columns.push({ name: data.metricNames[name], value: row => row.same ? null : row.found.values[name], metric: name });
@@ -557,7 +558,7 @@ async function start() {
   listen();
   if (!shownCells.length) {
     document.querySelectorAll('#compare, #bar').forEach(e => { e.hidden = true; });
-    $('table').closest('section').hidden = true;
+    $('measures').hidden = true;
     if (!cells.length) $('grid').closest('section').hidden = true;
     document.body.dataset.ready = 'yes';
     return;

@@ -76,17 +76,16 @@ says "the first is nan in channel 'G' at pixel 2,1"
 
 # The report needs nothing beside it; the heat map has the picture's size.
 expect 1 "$tsuya" compare a.exr dark.exr --fail 'flip>0.05' --html report.html --heat heat.png
-[ "$(grep -o 'src="data:image/png;base64,' report.html | wc -l)" -eq 3 ] || fail "three pictures expected"
-grep -Eq '(src|href)="[^d]' report.html && fail "the report points outside"
-grep -q 'class="bad"' report.html || fail "the broken limit is not marked"
-sed -n 's/.*alt="reference" src="data:image\/png;base64,\([^"]*\)".*/\1/p' report.html | base64 -d >inside.png
-expect 0 "$tsuya" compare a.png inside.png --fail 'max>0.005'
+[ "$(grep -c 'id="picture-' report.html)" -eq 3 ] || fail "three pictures expected"
+grep -Eq '(src|href)="[^d]|url\(|https?:' report.html && fail "the report points outside"
+grep -q '"verdict":"differs"' report.html || fail "the report does not judge"
+grep -q '"broken":\["flip"\]' report.html || fail "the broken limit is not marked"
 expect 0 "$tsuya" info heat.png
 prints "width: 48"
 expect 1 "$tsuya" compare a.exr small.exr --html report.html
 grep -q 'the display windows differ' report.html || fail "the report does not say why"
 expect 0 "$tsuya" compare a.exr b.exr --layer all --html report.html
-[ "$(grep -o 'data:image' report.html | wc -l)" -gt 20 ] || fail "a view for every layer expected"
+[ "$(grep -c 'id="picture-' report.html)" -gt 20 ] || fail "a view for every layer expected"
 
 # Mistakes.
 expect 2 "$tsuya" compare a.exr

@@ -32,6 +32,17 @@ expect 0 "$tsuya" sweep scene.yaml --zip --vary 'objects.0.name=</script><b>,"<!
 grep -q '</script><b>' hostile/index.html && fail "a value is not escaped"
 [ "$(grep -c '<script' hostile/index.html)" -eq "$(grep -c '</script>' hostile/index.html)" ] || fail "scripts do not match"
 
+# The page of `compare`: layers, display pictures, pictures that cannot be compared.
+cp 'grid/moisture=0.1,lights.1.radiance=4.exr' a.exr
+cp 'grid/moisture=0.9,lights.1.radiance=4.exr' b.exr
+expect 0 "$tsuya" develop a.exr -o a.png
+expect 0 "$tsuya" develop b.exr -o b.png
+expect 1 "$tsuya" compare a.exr b.exr --fail 'rmse>1e-4,psnr<1' --html compare.html
+expect 0 "$tsuya" compare a.png b.png --html display.html
+expect 0 "$tsuya" compare a.exr b.exr --layer all --html layers.html
+expect 0 "$tsuya" render scene.yaml -o size.exr --size 20x10 --spp 1 --progress none
+expect 1 "$tsuya" compare a.exr size.exr --html size.html
+
 python3 "$TSUYA_SOURCE/tests/cli/report_pages.py" "$tsuya"
 case $? in
 0) ;;
