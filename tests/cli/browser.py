@@ -70,6 +70,7 @@ class Browser:
         return [e[ELEMENT] for e in self.call("/elements", {"using": "css selector", "value": selector})]
 
     def click(self, selector):
+        self.script("document.querySelector(arguments[0]).scrollIntoView({block: 'center'})", selector)
         self.call(f"/element/{self.find(selector)}/click", {})
 
     def keys(self, selector, text):
