@@ -16,6 +16,7 @@ typedef struct binary
     ty_bounds bounds;
     uint32_t right; // NO_CHILD = a leaf
     uint32_t first; // leaf: of its instances in the order
+    uint32_t leaves;
 } binary;
 
 typedef struct builder
@@ -260,7 +261,7 @@ static split choose(builder* b, uint32_t first, uint32_t count, int depth)
 static uint32_t grow(builder* b, uint32_t first, uint32_t count, int depth)
 {
     uint32_t node = b->tree_count++;
-    b->tree[node] = (binary){bounds_of(b, first, count), NO_CHILD, first};
+    b->tree[node] = (binary){bounds_of(b, first, count), NO_CHILD, first, (count + TY_LANES - 1) / TY_LANES};
     if (count <= TY_LANES)
         return node;
     split s = choose(b, first, count, depth);
@@ -318,15 +319,15 @@ static void set_child(ty_wide_node* node, int lane, ty_bounds box, uint32_t chil
     node->child[lane] = child;
 }
 
-// The widest inner one of the candidates, or -1.
-static int widest(const builder* b, const uint32_t* candidates, int count)
+// The widest of the candidates whose leaves number from..to, or -1.
+static int widest(const builder* b, const uint32_t* candidates, int count, uint32_t from, uint32_t to)
 {
     int best = -1;
     float area = -1.0f;
     for (int i = 0; i < count; i++)
     {
         const binary* c = &b->tree[candidates[i]];
-        if (c->right != NO_CHILD && half_area(c->bounds) > area)
+        if (c->leaves >= from && c->leaves <= to && half_area(c->bounds) > area)
         {
             area = half_area(c->bounds);
             best = i;
@@ -335,19 +336,46 @@ static int widest(const builder* b, const uint32_t* candidates, int count)
     return best;
 }
 
-// Opens the binary node until it has sixteen children.
+static int open_candidate(const builder* b, uint32_t* candidates, int count, int open)
+{
+    uint32_t opened = candidates[open];
+    candidates[open] = opened + 1;
+    candidates[count] = b->tree[opened].right;
+    return count + 1;
+}
+
+// Puts all leaves below a candidate in its place.
+static int open_whole(const builder* b, uint32_t* candidates, int count, int open)
+{
+    while (b->tree[candidates[open]].right != NO_CHILD)
+    {
+        int added = count;
+        count = open_candidate(b, candidates, count, open);
+        count = open_whole(b, candidates, count, added);
+    }
+    return count;
+}
+
+// Up to sixteen children of a binary node. What fits into a node of its own stays whole unless all of it fits into this
+// one: opened in part it would leave nodes of two or three children.
+static int choose_children(const builder* b, uint32_t from, uint32_t candidates[TY_LANES])
+{
+    int count = 1, open;
+    candidates[0] = from;
+    while (count < TY_LANES && (open = widest(b, candidates, count, TY_LANES + 1, UINT32_MAX)) >= 0)
+        count = open_candidate(b, candidates, count, open);
+    while ((open = widest(b, candidates, count, 2, (uint32_t)(TY_LANES - count + 1))) >= 0)
+        count = open_whole(b, candidates, count, open);
+    return count;
+}
+
+// The binary node with up to sixteen children.
 static uint32_t make_node(builder* b, uint32_t from)
 {
     if (b->tree[from].right == NO_CHILD)
         return make_leaf(b, &b->tree[from]);
-    uint32_t candidates[TY_LANES] = {from}, index = b->wide->node_count++;
-    int count = 1;
-    for (int open; count < TY_LANES && (open = widest(b, candidates, count)) >= 0; count++)
-    {
-        uint32_t opened = candidates[open];
-        candidates[open] = opened + 1;
-        candidates[count] = b->tree[opened].right;
-    }
+    uint32_t candidates[TY_LANES], index = b->wide->node_count++;
+    int count = choose_children(b, from, candidates);
     for (int i = 0; i < TY_LANES; i++)
         set_child(&b->wide->nodes[index], i, ty_bounds_empty(), 0);
     for (int i = 0; i < count; i++)
