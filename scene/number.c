@@ -107,6 +107,7 @@ void ty_param_expected(const ty_param* row, ty_text* out)
             "a colour, { texture, value, scale, offset, uv, mapping, channel } or { attribute, ... }",
         [TY_PARAM_VECTOR_INPUT] = "{ texture, value, scale, offset, uv, mapping } or { attribute, ... }",
         [TY_PARAM_GROUP] = "a mapping",
+        [TY_PARAM_BRIEF_GROUP] = "a mapping",
         [TY_PARAM_LIST] = "a list of mappings",
         [TY_PARAM_POINTS] = "a list of points [x, y, z]",
         [TY_PARAM_NAMES] = "a mapping of names to names",
@@ -147,6 +148,7 @@ const char* ty_param_type_name(ty_param_type type)
         [TY_PARAM_COLOR_INPUT] = "colour input",
         [TY_PARAM_VECTOR_INPUT] = "vector input",
         [TY_PARAM_GROUP] = "mapping",
+        [TY_PARAM_BRIEF_GROUP] = "number or mapping",
         [TY_PARAM_LIST] = "list",
         [TY_PARAM_POINTS] = "points",
         [TY_PARAM_NAMES] = "names",
@@ -199,6 +201,9 @@ void ty_param_value_text(const ty_param* row, const void* def, ty_text* out)
         break;
     case TY_PARAM_ENUM:
         ty_text_add(out, row->choices[*(const int*)field]);
+        break;
+    case TY_PARAM_BRIEF_GROUP:
+        ty_param_value_text(&row->group->params[0], field, out);
         break;
     case TY_PARAM_VECTOR_INPUT: // none unless written
     case TY_PARAM_GROUP:

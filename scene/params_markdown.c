@@ -20,7 +20,12 @@ static void add_cell(ty_text* out, const char* text)
 static void add_accepted(ty_text* out, const ty_param* row)
 {
     ty_text cell = {0};
-    if (row->group)
+    if (row->type == TY_PARAM_BRIEF_GROUP)
+    {
+        ty_param_expected(&row->group->params[0], &cell);
+        ty_text_format(&cell, "; or a mapping of `%s`", row->group->name);
+    }
+    else if (row->group)
         ty_text_format(&cell, "%s of `%s`", row->type == TY_PARAM_LIST ? "a list" : "a mapping", row->group->name);
     else
         ty_param_expected(row, &cell);
@@ -98,6 +103,7 @@ static const char FILES[] =
     "more factor. `product: rec709` multiplies the colours in that space instead of ACEScg, as their file may mean it. "
     "Packed aggregates bring the "
     "attributes `moisture` and `tint` (-1..1 around the mean) and `depth` (metres under the surface of the heap); "
+    "every aggregate has `height` (0 for its lowest instance, 1 for its highest); "
     "`.ply` points bring every further property by its name.\n\n"
     "Beside `texture` may stand `channel`: `r`, `g`, `b`, `a` (1 where the file has none) or `luminance` in place of "
     "all; "

@@ -236,6 +236,25 @@ static bool read_strings(ty_reader* reader, const ty_node* node, const ty_param*
 static bool read_keys(ty_reader* reader, ty_node* node, const ty_param_table* table, void* def,
                       const char* const* skip);
 
+static bool is_group_written(const ty_node* node)
+{
+    static const char* const of_inputs[] = {"attribute", "texture", "value"};
+    for (int i = 0; i < TY_PARAM_COUNT(of_inputs); ++i)
+        if (ty_node_find(node, of_inputs[i]) >= 0)
+            return false;
+    return node->kind == TY_NODE_MAP;
+}
+
+// A mapping of the group, else the input of its first row under the group's name.
+static bool read_brief(ty_reader* reader, ty_node* node, const ty_param* row, void* field)
+{
+    if (is_group_written(node))
+        return read_keys(reader, node, row->group, field, NULL);
+    ty_param first = row->group->params[0];
+    first.name = row->name;
+    return ty_param_read_input(reader, node, &first, (ty_input*)((char*)field + first.offset));
+}
+
 bool ty_param_read(ty_reader* reader, ty_node* node, const ty_param* row, void* field)
 {
     if (node->bad)
@@ -270,6 +289,8 @@ bool ty_param_read(ty_reader* reader, ty_node* node, const ty_param* row, void* 
         return ty_param_read_input(reader, node, row, field);
     case TY_PARAM_GROUP:
         return read_keys(reader, node, row->group, field, NULL);
+    case TY_PARAM_BRIEF_GROUP:
+        return read_brief(reader, node, row, field);
     case TY_PARAM_LIST:
         return read_list(reader, node, row, field);
     case TY_PARAM_POINTS:

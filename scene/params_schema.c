@@ -139,6 +139,10 @@ static void add_type(ty_text* out, const ty_param* row)
     case TY_PARAM_GROUP:
         ty_text_format(out, "{\"$ref\": \"#/$defs/%s\"}", row->group->name);
         break;
+    case TY_PARAM_BRIEF_GROUP:
+        add_input(out, &row->group->params[0]);
+        ty_text_format(out, ", {\"$ref\": \"#/$defs/%s\"}", row->group->name);
+        break;
     case TY_PARAM_STRINGS:
         ty_text_add(out, "{\"type\": \"string\"}, {\"type\": \"array\", \"items\": {\"type\": \"string\"}}");
         break;
@@ -159,8 +163,9 @@ static void add_type(ty_text* out, const ty_param* row)
 // Whether values of a table may change with time.
 static bool is_keyed(const ty_param_table* table)
 {
-    const ty_param_table* const tables[] = {ty_camera_params(), ty_turntable_params(), ty_light_params(),
-                                            ty_object_params(), ty_surface_params(),   ty_cdrf_params()};
+    const ty_param_table* const tables[] = {ty_camera_params(),   ty_turntable_params(), ty_light_params(),
+                                            ty_object_params(),   ty_surface_params(),   ty_cdrf_params(),
+                                            ty_moisture_params(), ty_soak_params()};
     for (int i = 0; i < TY_PARAM_COUNT(tables); ++i)
         if (tables[i] == table)
             return true;

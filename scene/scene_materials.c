@@ -74,12 +74,38 @@ static void read_surface(ty_loader* loader, ty_node* node, int index)
         report_impossible(loader, node, loader->scene->material_names[index], &error);
 }
 
+// One of three ways to say it, and one place for the degree of cooking.
+static bool read_moisture_source(ty_loader* loader, const ty_node* node, ty_moisture_inputs* moisture)
+{
+    static const char* const ways[] = {"wet_basis", "uptake", "soak"};
+    const ty_node *map = ty_node_get(node, "moisture"), *cooked = ty_node_get(node, "cooked");
+    const char* said = NULL;
+    bool good = true;
+    for (int i = 0; map && map->kind == TY_NODE_MAP && i < TY_PARAM_COUNT(ways); ++i)
+    {
+        int found = ty_node_find(map, ways[i]);
+        if (found >= 0 && said)
+        {
+            ty_report(loader->errors, map->keys[found].place, TY_BAD_INPUT, "moisture is either '%s' or '%s', not both",
+                      said, ways[i]);
+            good = false;
+        }
+        said = found >= 0 ? ways[i] : said;
+        moisture->source = found >= 0 ? i : moisture->source;
+    }
+    if (!cooked || !map || ty_node_find(map, "cooked") < 0)
+        return good;
+    ty_report(loader->errors, cooked->place, TY_BAD_INPUT, "'cooked' is said in 'moisture' already");
+    return false;
+}
+
 static void read_cdrf(ty_loader* loader, ty_node* node, int index)
 {
     static const char* const skip[] = {"model", NULL};
     ty_cdrf_def def;
     ty_error error;
-    if (ty_params_read(&loader->reader, node, ty_cdrf_params(), &def, skip) && !loader->checks_keys &&
+    if (ty_params_read(&loader->reader, node, ty_cdrf_params(), &def, skip) &&
+        read_moisture_source(loader, node, &def.moisture) && !loader->checks_keys &&
         ty_material_create_cdrf(&def, &loader->scene->materials[index], &error) != TY_OK)
         report_impossible(loader, node, loader->scene->material_names[index], &error);
 }

@@ -54,7 +54,9 @@ static void check_attribute(ty_loader* loader, const ty_placed_object* asset, co
         return;
     meshes all = meshes_of(asset);
     int of_instances = asset->aggregate ? asset->aggregate->attribute_count : 0, count = 0;
-    const char** names = TY_ALLOC(const char*, of_instances + all.items[0]->attribute_count);
+    const char** names = TY_ALLOC(const char*, of_instances + all.items[0]->attribute_count + 1);
+    if (asset->aggregate)
+        names[count++] = "height"; // made where it is asked for
     for (int i = 0; i < of_instances; ++i)
         names[count++] = asset->aggregate->attributes[i].name;
     for (int i = 0; i < all.items[0]->attribute_count; ++i)
@@ -65,6 +67,21 @@ static void check_attribute(ty_loader* loader, const ty_placed_object* asset, co
     ty_free(names);
     ty_report(loader->errors, use->place, TY_BAD_INPUT, "%s '%.100s' has no attribute '%.100s'%s",
               asset->aggregate ? "aggregate" : "mesh", asset->name, name, count ? nearest : "; it has none");
+}
+
+// Where the file of an aggregate says nothing else, `height` is where its instances stand in it: 0 the lowest, 1 the
+// highest.
+static void make_height(ty_aggregate* aggregate)
+{
+    float low = INFINITY, high = -INFINITY;
+    for (uint32_t i = 0; i < aggregate->instance_count; ++i)
+    {
+        low = ty_min(low, aggregate->transforms[i].t.y);
+        high = ty_max(high, aggregate->transforms[i].t.y);
+    }
+    float* height = ty_aggregate_add_attribute(aggregate, "height");
+    for (uint32_t i = 0; i < aggregate->instance_count; ++i)
+        height[i] = high > low ? (aggregate->transforms[i].t.y - low) / (high - low) : 1.0f;
 }
 
 static void set_attributes(ty_loader* loader, ty_scene_object* object, const ty_aggregate* aggregate)
@@ -95,6 +112,9 @@ void ty_build_attributes(ty_loader* loader)
     for (int i = 0; i < scene->object_count; ++i)
     {
         const ty_placed_object* placed = &loader->placed[i];
+        for (int a = 0; placed->aggregate && a < scene->attribute_count; ++a)
+            if (strcmp(scene->attribute_names[a], "height") == 0 && !has_attribute(placed, "height"))
+                make_height(placed->aggregate);
         set_attributes(loader, &scene->objects[i], placed->aggregate);
         for (int u = 0; meshes_of(placed).count > 0 && u < loader->use_count; ++u)
             if (shows_material(&scene->objects[i], loader->uses[u].material))

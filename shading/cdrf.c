@@ -7,20 +7,19 @@
 #include "microfacet.h"
 #include <tsuya/shading/cdrf.h>
 
-// A film of water darkens and saturates: colour^(1 + .15 (film - 1)). The colour of a material is that
+// A film of water darkens and saturates: colour^exponent. The colour of a material is that
 // of its cooked state, so that at the default moisture it is what the scene says. White stays white.
-static float film_color(float c, float film)
+static float film_color(float c, float exponent)
 {
     c = ty_clamp(c, 0.0f, 1.0f);
-    return c < 1.0f ? ty_pow(c, 1.0f + 0.15f * (film - 1.0f)) : 1.0f; // cooked: the film is whole
+    return c < 1.0f && exponent != 1.0f ? ty_pow(c, exponent) : c;
 }
 
-static ty_moisture_optics optics_at(const ty_cdrf_def* d, const ty_shading_context* context, const ty_surface_point* p)
+static ty_moisture_optics optics_at(const ty_material* m, const ty_shading_context* context, const ty_surface_point* p)
 {
-    ty_moisture_def def = ty_moisture_def_default();
-    def.wet_basis = ty_clamp(ty_input_float(&d->moisture, context, p), 0.05f, 1.0f);
-    def.cooked = d->cooked;
-    return ty_moisture_optics_make(ty_moisture_make(&def));
+    if (m->optics_are_constant)
+        return m->optics;
+    return ty_moisture_optics_make(ty_moisture_at(&m->cdrf.moisture, context, p));
 }
 
 static void prepare_coat(const ty_material* material, const ty_shading_context* context,
@@ -42,10 +41,10 @@ static void prepare_coat(const ty_material* material, const ty_shading_context* 
 void ty_cdrf_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
 {
     const ty_cdrf_def* d = &material->cdrf;
-    ty_moisture_optics optics = optics_at(d, context, &b->point);
+    ty_moisture_optics optics = optics_at(material, context, &b->point);
     ty_rgb color = ty_input_color(&d->color, context, &b->point);
-    b->color = ty_rgb_make(film_color(color.r, optics.film), film_color(color.g, optics.film),
-                           film_color(color.b, optics.film));
+    b->color = ty_rgb_make(film_color(color.r, optics.color_exponent), film_color(color.g, optics.color_exponent),
+                           film_color(color.b, optics.color_exponent));
     b->mean_free_path = ty_input_float(&d->mean_free_path, context, &b->point);
     if (b->mean_free_path < 0.0f)
     {

@@ -153,6 +153,11 @@ ty_status ty_material_create_cdrf(const ty_cdrf_def* def, ty_material** out, ty_
     float roughness[2];
     table_range(&def->specular_roughness, 0.0f, 1.0f, roughness);
     m->coat = make_table(&def->specular_weight, roughness, def->specular_ior, def->specular_ior);
+    if (def->cooked >= 0.0f && def->moisture.cooked.value.r < 0.0f)
+        m->cdrf.moisture.cooked = ty_input_scalar(def->cooked);
+    m->optics_are_constant = ty_moisture_inputs_are_constant(&def->moisture);
+    if (m->optics_are_constant)
+        m->optics = ty_moisture_optics_make(ty_moisture_at(&m->cdrf.moisture, NULL, NULL));
     m->bent = has_map(&def->normal, &def->bump);
     if (def->evaluate == TY_CDRF_LOCAL && def->kernel == TY_CDRF_POISSON)
         m->poisson = ty_poisson_table_create();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Defaults and parameter tables of the materials.
-#include <tsuya/shading/material.h>
+#include "material_private.h"
 
 ty_surface_def ty_surface_def_default(void)
 {
@@ -35,7 +35,7 @@ ty_cdrf_def ty_cdrf_def_default(void)
 {
     return (ty_cdrf_def){
         .color = ty_input_make(ty_rgb_make(0.80f, 0.79f, 0.73f)),
-        .moisture = ty_input_scalar(0.62f),
+        .moisture = ty_moisture_inputs_default(),
         .cooked = -1.0f,
         .mean_free_path = ty_input_scalar(-1e-3f),
         .kernel = TY_CDRF_POISSON,
@@ -110,8 +110,13 @@ static const char* const evaluate_names[] = {"depth", "probe", "local", NULL};
 #define DEF ty_cdrf_def
 static const ty_param cdrf_rows[] = {
     ROW(color, COLOR, "", 0, 1, "share of the entered light that leaves again"),
-    ROW(moisture, SCALAR, "", 0.05, 1, "water per total mass: rice is .145 raw, .31 soaked, .62 cooked"),
-    ROW(cooked, NUMBER, "", -1, 1, "degree of gelatinisation; negative: follows from moisture"),
+    {.name = "moisture",
+     .type = TY_PARAM_BRIEF_GROUP,
+     .unit = "",
+     .group = &ty_moisture_table,
+     .offset = offsetof(ty_cdrf_def, moisture),
+     .help = "water per total mass: rice is .145 raw, .31 soaked, .62 cooked; or how it got there"},
+    ROW(cooked, NUMBER, "", -1, 1, "degree of gelatinisation, unless moisture says it; negative: follows from it"),
     ROW(mean_free_path, SCALAR, "mm", -1, 1000, "transport mean free path; negative: from moisture"),
     {.name = "kernel",
      .type = TY_PARAM_ENUM,

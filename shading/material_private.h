@@ -4,6 +4,7 @@
 #include "albedo_table.h"
 #include "kernel_table.h"
 #include "loss_table.h"
+#include <tsuya/shading/cdrf.h>
 #include <tsuya/shading/material.h>
 
 typedef enum ty_material_model
@@ -29,7 +30,11 @@ struct ty_material
     ty_loss_table* conductor;  // of the metal or sheet of `surface`, NULL where it has none or loses nothing
     ty_loss_table* dielectric; // of its clear boundary, likewise
     ty_poisson_table* poisson; // for `local` with the Poisson kernel
+    bool optics_are_constant;  // of `cdrf`: the moisture is, and then they are these:
+    ty_moisture_optics optics;
 };
+
+extern const ty_param_table ty_moisture_table;
 
 static inline ty_rgb ty_clamp_color(ty_rgb c)
 {

@@ -4,7 +4,8 @@
 
 static const float raw_wet_basis = 0.145f, soaked_wet_basis = 0.31f, cooked_wet_basis = 0.62f;
 static const float driest_wet_basis = 0.05f;
-static const float dry_roughness = 0.45f, film_roughness = 0.17f;
+static const float dry_roughness = 0.45f, film_roughness = 0.17f, water_roughness = 0.08f;
+static const float water_range = 0.18f; // of wet basis above saturation, until the surface is water all over
 
 static float smoothstep(float low, float high, float x)
 {
@@ -21,10 +22,15 @@ ty_moisture_optics ty_moisture_optics_make(ty_moisture state)
     float log_raw = ty_lerp(-1.6607312f, -2.3025851f, soaking), log_cooked = 0.0736f + 0.9f * log_w;
     // Water stays on the surface once the grain is near saturation: the film fills the roughness.
     float film = smoothstep(0.10f, cooked_wet_basis, w);
+    // What the grain does not hold any more lies on it.
+    float saturated = ty_lerp(soaked_wet_basis, cooked_wet_basis, cooked);
+    float water = ty_clamp((w - saturated) / water_range, 0.0f, 1.0f);
     return (ty_moisture_optics){
         .mean_free_path = 1e-3f * ty_exp(ty_lerp(log_raw, log_cooked, cooked)),
         .gaussian_sigma = 1e-3f * ty_exp(0.34f + 0.52f * log_w),
         .film = film,
-        .roughness = ty_lerp(dry_roughness, film_roughness, film),
+        .water = water,
+        .roughness = ty_lerp(ty_lerp(dry_roughness, film_roughness, film), water_roughness, water),
+        .color_exponent = 1.0f + 0.15f * (film - 1.0f) + 0.1f * water,
     };
 }

@@ -81,7 +81,7 @@ static void variables_are_defined(void** state)
     assert_int_equal(load_with(NULL, "wt=.125"), TY_BAD_INPUT);
     assert_true(fixture_has("-D", 1, 1, "no variable 'wt'; did you mean 'wet'?"));
     assert_int_equal(load_with(NULL, "wet=7"), TY_BAD_INPUT);
-    assert_true(fixture_has("-D", 1, 5, "'moisture' is 7: out of range, expected a number 0.05..1"));
+    assert_true(fixture_has("-D", 1, 5, "'moisture' is 7: out of range, expected a number 0..1"));
     assert_int_equal(load_with(NULL, "wet"), TY_BAD_INPUT);
     assert_true(fixture_has("-D", 1, 1, "expected name=value"));
 }

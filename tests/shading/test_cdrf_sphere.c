@@ -136,7 +136,7 @@ static void test_published_moisture_law_is_linear(void** state)
 {
     (void)state;
     ty_cdrf_def d = white_cdrf(TY_CDRF_LOCAL, TY_CDRF_GAUSSIAN_PUBLISHED, -1);
-    d.moisture = ty_input_scalar(0.2f);
+    d.moisture.wet_basis = ty_input_scalar(0.2f);
     ty_material* m = cdrf(&d);
     float sigma = ty_moisture_optics_make((ty_moisture){0.2f, 0}).gaussian_sigma / radius;
     assert_near(at_angle(&ball, m, 90, 1), (double)ty_cdrf_gaussian_published(sigma, TY_PI / 2), 1e-3);

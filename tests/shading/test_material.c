@@ -37,6 +37,11 @@ static void check_table(const ty_param_table* table)
         assert_true(p->name && p->help && p->unit && p->offset >= end);
         bool input =
             p->type == TY_PARAM_SCALAR_INPUT || p->type == TY_PARAM_COLOR_INPUT || p->type == TY_PARAM_VECTOR_INPUT;
+        if (p->type == TY_PARAM_BRIEF_GROUP)
+        {
+            end = p->offset + p->group->size;
+            continue;
+        }
         end = p->offset + (input ? sizeof(ty_input) : sizeof(float));
         if (p->type == TY_PARAM_ENUM)
         {
@@ -58,6 +63,7 @@ static void test_parameter_tables(void** state)
     (void)state;
     check_table(ty_surface_params());
     check_table(ty_cdrf_params());
+    check_table(ty_soak_params());
     assert_int_equal(ty_surface_params()->count, 25);
     assert_int_equal(ty_cdrf_params()->count, 12);
 }
@@ -89,8 +95,8 @@ static void test_moisture_of_an_instance_darkens(void** state)
     const float* const* const objects[1] = {attributes};
     ty_shading_context context = {.object_attributes = objects};
     ty_cdrf_def d = ty_cdrf_def_default();
-    d.moisture = ty_input_scalar(1);
-    d.moisture.attribute_index = 0;
+    d.moisture.wet_basis = ty_input_scalar(1);
+    d.moisture.wet_basis.attribute_index = 0;
     ty_material* m = cdrf(&d);
     ty_bsdf b[2];
     for (uint32_t i = 0; i < 2; i++)

@@ -24,6 +24,7 @@ typedef enum ty_param_type
     TY_PARAM_COLOR_INPUT,  // ty_input with three channels
     TY_PARAM_VECTOR_INPUT, // ty_input with three signed numbers of a texture: -1 + 2 * texel unless said
     TY_PARAM_GROUP,        // a nested struct in place, described by group
+    TY_PARAM_BRIEF_GROUP,  // the same; may be written as the input that its first row is
     TY_PARAM_LIST,         // ty_param_list of structs described by group
     TY_PARAM_POINTS,       // ty_param_list of ty_vec3: a list of [x, y, z]
     TY_PARAM_NAMES,        // ty_param_list of ty_param_name: a mapping of names to names
@@ -122,7 +123,7 @@ typedef struct ty_param
     const char* unit;            // "m", "deg" (stored in radians), "mm" (stored in metres), "s", "" ...
     double minimum, maximum;     // per component, inclusive, in the written unit; both 0 = unbounded
     const char* const* choices;  // ENUM: names, NULL-terminated
-    const ty_param_table* group; // GROUP, LIST
+    const ty_param_table* group; // GROUP, BRIEF_GROUP, LIST
     size_t offset;
     const char* help; // one line
     bool required;

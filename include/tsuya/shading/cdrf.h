@@ -24,7 +24,9 @@ typedef struct ty_moisture_optics
     float mean_free_path; // m
     float gaussian_sigma; // sigma_0 in m (sigma = sigma_0 * curvature), the seed's linear law
     float film;           // 0..1 weight of the water film
+    float water;          // 0..1 of free water above saturation: .31 raw, .62 cooked
     float roughness;      // of the specular coat
+    float color_exponent; // the colour is that of the cooked state to this power
 } ty_moisture_optics;
 
 // l(w) = exp(.0736 + .9 ln w) mm for cooked; raw soaked .19 -> .10 mm over w .145 -> .31; mixed in the log by `cooked`.

@@ -43,6 +43,34 @@ typedef struct ty_surface_def
     ty_input bump; // m, height along the normal; no texture = none
 } ty_surface_def;
 
+// What moisture is written as.
+typedef enum ty_moisture_source
+{
+    TY_MOISTURE_WET_BASIS,
+    TY_MOISTURE_UPTAKE,
+    TY_MOISTURE_SOAK,
+} ty_moisture_source;
+
+typedef struct ty_soak_inputs
+{
+    ty_input minutes;
+    ty_input celsius; // 0..60
+} ty_soak_inputs;
+
+typedef struct ty_moisture_inputs
+{
+    ty_input wet_basis;  // 0..1
+    ty_input uptake;     // of water per raw mass
+    ty_soak_inputs soak; //
+    ty_input cooked;     // 0..1; < 0: as ty_moisture_def says
+    ty_input gradient;   // added to the wet basis; between 0 and its value
+    int source;          // ty_moisture_source: which of the first three counts
+} ty_moisture_inputs;
+
+ty_moisture_inputs ty_moisture_inputs_default(void); // cooked rice
+const ty_param_table* ty_moisture_params(void);      // "moisture"
+const ty_param_table* ty_soak_params(void);          // "moisture.soak"
+
 typedef enum ty_cdrf_kernel
 {
     TY_CDRF_POISSON,
@@ -60,8 +88,8 @@ typedef enum ty_cdrf_evaluate
 typedef struct ty_cdrf_def
 {
     ty_input color;              // fraction of the entered light that leaves again, per channel
-    ty_input moisture;           // wet basis, .05..1
-    float cooked;                // 0..1; < 0: follows from moisture
+    ty_moisture_inputs moisture; //
+    float cooked;                // 0..1, where moisture does not say; < 0: neither does this
     ty_input mean_free_path;     // m, transport mean free path; < 0: from the moisture law
     int kernel;                  // ty_cdrf_kernel; `depth` knows poisson alone
     int evaluate;                // ty_cdrf_evaluate
@@ -110,6 +138,11 @@ typedef struct ty_shading_context
 // Textures are averaged over the point's footprint.
 ty_rgb ty_input_color(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point);
 float ty_input_float(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point);
+
+// The state at a point. context and point may be NULL where all is constant.
+ty_moisture ty_moisture_at(const ty_moisture_inputs* inputs, const ty_shading_context* context,
+                           const ty_surface_point* point);
+bool ty_moisture_inputs_are_constant(const ty_moisture_inputs* inputs);
 
 // Radiance that leaves the outer side at a point, in every direction.
 ty_rgb ty_material_emission(const ty_material* material, const ty_shading_context* context,
