@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The front door. `make demo` and `make test` install what is missing (they say so first); `make build` installs nothing.
-.PHONY: build demo test setup mutations fuzz bench bench-trace bench-textures bench-cycles format check clean
+.PHONY: build demo test setup mutations fuzz bench bench-trace bench-textures bench-shading bench-cycles format check clean
 
 build:
 	@.ci/build release
@@ -29,6 +29,10 @@ bench-trace: build
 
 bench-textures: build
 	@bench/textures
+
+bench-shading: build
+	@.ci/setup plot
+	@bench/shading/run
 
 bench-cycles: build
 	@.ci/setup bench

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// White bodies in a constant environment of radiance 1, through the whole program: whatever keeps energy shows 1.
+#include "report.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <tsuya/renderer/render.h>
+#include <tsuya/shading/cdrf.h>
+
+typedef struct furnace_case
+{
+    const char* name;
+    const char* shape; // of radius 1 cm
+    const char* material;
+    double expected;
+} furnace_case;
+
+#define SPHERE "{ shape: sphere, radius: 0.01, divisions: 96 }"
+#define ELLIPSOID "{ shape: ellipsoid, size: [0.0125, 0.007, 0.005], divisions: 96 }"
+#define TORUS "{ shape: torus, radius: 0.0075, tube: 0.003, divisions: 96 }"
+#define CUBE "{ shape: box, size: [0.006, 0.006, 0.006], rounding: 0.0015, divisions: 96 }"
+#define CDRF "{ model: cdrf, color: 1, mean_free_path: 3, "
+#define BARE "specular_weight: 0, "
+#define METAL "{ model: surface, base_metalness: 1, base_color: 1, specular_color: 1, "
+#define GLASS "{ model: surface, transmission_weight: 1, specular_ior: 1.5, "
+
+static const furnace_case cases[] = {
+    {"diffuse", SPHERE, "{ model: surface, base_color: 1, specular_weight: 0 }", 1},
+    {"depth, sphere", SPHERE, CDRF BARE "evaluate: depth }", 1},
+    {"depth, ellipsoid", ELLIPSOID, CDRF BARE "evaluate: depth }", 1},
+    {"depth, torus", TORUS, CDRF BARE "evaluate: depth }", 1},
+    {"depth, rounded cube", CUBE, CDRF BARE "evaluate: depth }", 1},
+    {"depth under a coat", SPHERE, CDRF "specular_roughness: 0.3, evaluate: depth }", 1},
+    {"depth under a mirror coat", ELLIPSOID, CDRF "specular_roughness: 0, evaluate: depth }", 1},
+    {"probe, sphere", SPHERE, CDRF BARE "evaluate: probe }", 1},
+    {"probe, torus", TORUS, CDRF BARE "evaluate: probe }", 1},
+    {"local poisson, sphere", SPHERE, CDRF BARE "evaluate: local }", 1},
+    {"local gaussian, sphere", SPHERE, CDRF BARE "evaluate: local, kernel: gaussian }", 1},
+    {"dielectric over diffuse", SPHERE, "{ model: surface, base_color: 1, specular_roughness: 0.3 }", 1},
+    {"the same, smooth", SPHERE, "{ model: surface, base_color: 1, specular_roughness: 0 }", 1},
+    {"coat over diffuse", SPHERE, "{ model: surface, base_color: 1, coat_weight: 1, coat_roughness: 0.2 }", 1},
+    {"metal, roughness .2", SPHERE, METAL "specular_roughness: 0.2 }", 1},
+    {"metal, roughness .9", SPHERE, METAL "specular_roughness: 0.9 }", 1},
+    {"metal, anisotropic", SPHERE, METAL "specular_roughness: 0.5, specular_roughness_anisotropy: 0.8 }", 1},
+    {"glass, smooth", SPHERE, GLASS "specular_roughness: 0 }", 1},
+    {"glass, roughness .5", SPHERE, GLASS "specular_roughness: 0.5 }", 1},
+    {"sheet, subsurface", SPHERE,
+     "{ model: surface, thin_walled: true, subsurface_weight: 1, subsurface_color: 1, specular_weight: 0 }", 1},
+};
+
+static const char* const scene_text = "tsuya: 1\n"
+                                      "film: { size: [%d, %d] }\n"
+                                      "camera: { position: [0.01, 0.03, 0.08], look_at: [0, 0, 0], vfov: 16 }\n"
+                                      "render: { samples: %d, max_depth: 256, roulette_depth: 256, seed: 3 }\n"
+                                      "assets:\n  body: %s\n"
+                                      "materials:\n  white: %s\n"
+                                      "objects:\n  - { mesh: body, material: white }\n"
+                                      "lights:\n  - { type: environment, radiance: 1 }\n";
+
+static const float* channel(const ty_exr* exr, const char* name)
+{
+    const ty_exr_channel* c = ty_exr_find_channel(exr, name);
+    TY_ASSERT(c != NULL);
+    return c->pixels;
+}
+
+typedef struct mean_error
+{
+    double mean, error;
+} mean_error;
+
+// Over the pixels that the body fills.
+static mean_error over_body(const ty_exr* exr)
+{
+    const float *g = channel(exr, "G"), *alpha = channel(exr, "A"), *variance = channel(exr, "variance.Y");
+    double sum = 0.0, noise = 0.0;
+    int count = 0;
+    for (int i = 0; i < ty_exr_width(exr) * ty_exr_height(exr); i++)
+        if (alpha[i] > 0.999f)
+        {
+            sum += (double)g[i];
+            noise += (double)variance[i];
+            count++;
+        }
+    TY_ASSERT(count > 0);
+    return (mean_error){sum / count, sqrt(noise) / count};
+}
+
+static bool render(const char* text, ty_workers* workers, ty_exr** out)
+{
+    ty_error_list errors = {0};
+    ty_error error = {0};
+    ty_scene_options options = {.workers = workers};
+    ty_scene* scene;
+    if (ty_scene_load_memory("furnace", text, strlen(text), &options, &scene, &errors) != TY_OK)
+    {
+        char message[1600];
+        ty_error_format(&errors.items[0], message, sizeof message);
+        fprintf(stderr, "bench_shading: %s\n", message);
+        ty_error_list_term(&errors);
+        return false;
+    }
+    ty_film_setup setup = {.size = {scene->film.size[0], scene->film.size[1]},
+                           .crop = {0, 0, scene->film.size[0] - 1, scene->film.size[1] - 1},
+                           .sample_end = scene->render.samples,
+                           .aovs = TY_AOV_ALL};
+    ty_film* film = NULL;
+    ty_render_options how = {.sample_end = scene->render.samples};
+    ty_render_stats stats;
+    ty_film_write write = {.scene = scene, .sample_end = scene->render.samples};
+    bool good = ty_film_create(&setup, &film, &error) == TY_OK &&
+                ty_render(scene, &how, workers, film, &stats, &error) == TY_OK &&
+                ty_film_to_exr(film, &write, out, &error) == TY_OK;
+    ty_film_destroy(film);
+    ty_scene_destroy(scene);
+    return good;
+}
+
+static void run_case(const furnace_case* c, const bench_options* options, ty_workers* workers)
+{
+    char text[2000];
+    ty_exr* exr;
+    int size = options->quick ? 20 : 48;
+    snprintf(text, sizeof text, scene_text, size, size, options->quick ? 32 : 256, c->shape, c->material);
+    if (!render(text, workers, &exr))
+    {
+        report_holds(c->name, false);
+        return;
+    }
+    mean_error m = over_body(exr);
+    ty_exr_destroy(exr);
+    report_near(c->name, m.mean, c->expected, 0.002 + m.error);
+}
+
+// The mean free path, in mm, at which the law gives a sphere of 10 mm this sigma.
+static double path_of_sigma(double sigma)
+{
+    float low = 0.01f, high = 3.0f;
+    for (int i = 0; i < 60; i++)
+    {
+        float middle = 0.5f * (low + high);
+        if ((double)ty_cdrf_gaussian_sigma(middle) < sigma)
+            low = middle;
+        else
+            high = middle;
+    }
+    return 10.0 * (double)low;
+}
+
+void bench_furnace(const bench_options* options)
+{
+    ty_workers* workers;
+    ty_error error;
+    if (ty_workers_create(options->threads, &workers, &error) != TY_OK)
+        workers = NULL;
+    report_title("Furnace: white bodies in an environment of radiance 1, rendered",
+                 "  (tolerance: .002 and one standard error of independent samples)");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        run_case(&cases[i], options, workers);
+    char material[300];
+    snprintf(material, sizeof material,
+             "{ model: cdrf, color: 1, specular_weight: 0, mean_free_path: %.6f, evaluate: local, kernel: "
+             "gaussian_published }",
+             path_of_sigma(0.5));
+    furnace_case published = {"control: published, sigma .5, gains I / pi", SPHERE, material,
+                              (double)ty_cdrf_gaussian_integral(0.5f) / (double)TY_PI};
+    run_case(&published, options, workers);
+    report_near("I(.5) / pi", published.expected, 1.103, 0.0005);
+    ty_workers_destroy(workers);
+}
