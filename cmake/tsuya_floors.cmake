@@ -34,16 +34,17 @@ function(tsuya_compile_options target)
 endfunction()
 
 # Sources that call fused operations by name (base/simd.h, fmaf): as instructions, where the build's machines have them.
-# Nothing else fuses: -ffp-contract stays off.
+# Nothing else fuses: -ffp-contract stays off. The answer is kept by the target, which may be set anew.
 include(CheckCSourceCompiles)
+string(MAKE_C_IDENTIFIER "tsuya_has_fma_${TSUYA_ARCH}" tsuya_has_fma)
 set(CMAKE_REQUIRED_FLAGS "-march=${TSUYA_ARCH}")
 check_c_source_compiles("#ifndef __FMA__
 #error
 #endif
-int main(void) { return 0; }" TSUYA_HAS_FMA)
+int main(void) { return 0; }" ${tsuya_has_fma})
 unset(CMAKE_REQUIRED_FLAGS)
 function(tsuya_use_fma)
-    if(TSUYA_HAS_FMA)
+    if(${tsuya_has_fma})
         set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "-mfma")
     endif()
 endfunction()
