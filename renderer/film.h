@@ -136,8 +136,11 @@ TY_CHECKED ty_status ty_film_from_part(const ty_exr* exr, const char* name, ty_f
 void ty_film_add_range(int sample_begin, int sample_end, ty_exr* exr); // "tsuya/samples"
 
 #define TY_GROUP_CHANNEL "light."
+#define TY_GROUP_CHANNEL_SIZE 56 // bytes that a channel's name takes at most
 #define TY_PART_CHANNEL "part."
 #define TY_KEY_SAMPLES "tsuya/samples"
 #define TY_KEY_PARTIAL "tsuya/partial"
 #define TY_KEY_PART "tsuya/part"
 #define TY_KEY_PLANNED "tsuya/samplesPlanned" // of the scene: tells a part from a picture
+// "light.NAME.R" and so on.
+void ty_film_group_channel(const char* group, int component, char name[TY_GROUP_CHANNEL_SIZE]);

@@ -103,10 +103,9 @@ static void write_pixel(const ty_pixel_sums* sums, const ty_exr_type types[CHANN
     }
 }
 
-// "light.NAME.R" and so on.
-static void group_channel(const char* group, int component, char name[64])
+void ty_film_group_channel(const char* group, int component, char name[TY_GROUP_CHANNEL_SIZE])
 {
-    snprintf(name, 64, TY_GROUP_CHANNEL "%.*s.%c", TY_LIGHT_GROUP_NAME, group, "RGB"[component]);
+    snprintf(name, TY_GROUP_CHANNEL_SIZE, TY_GROUP_CHANNEL "%.*s.%c", TY_LIGHT_GROUP_NAME, group, "RGB"[component]);
 }
 
 static ty_exr_type channel_type(const channel* row, bool half)
@@ -135,8 +134,8 @@ bool ty_film_setup_matches(const ty_film_setup* setup, const ty_exr* exr)
     for (int g = 0; setup->aovs & TY_AOV_LIGHT && g < setup->group_count; ++g)
         for (int c = 0; c < 3; ++c, ++expected)
         {
-            char name[64];
-            group_channel(setup->groups[g], c, name);
+            char name[TY_GROUP_CHANNEL_SIZE];
+            ty_film_group_channel(setup->groups[g], c, name);
             same = same && has_channel(exr, name, setup->half ? TY_EXR_HALF : TY_EXR_FLOAT);
         }
     for (int i = 0; i < exr->channel_count; ++i)
@@ -152,8 +151,8 @@ static void add_groups(const ty_film* film, ty_exr* exr)
     for (uint32_t g = 0; g < film->group_count; ++g)
         for (int c = 0; c < 3; ++c)
         {
-            char name[64];
-            group_channel(film->group_names[g], c, name);
+            char name[TY_GROUP_CHANNEL_SIZE];
+            ty_film_group_channel(film->group_names[g], c, name);
             float* pixels = ty_exr_add_channel(exr, name, type);
             for (size_t i = 0; i < count; ++i)
             {

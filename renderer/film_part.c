@@ -111,8 +111,8 @@ static int list_words(unsigned aovs, const char* const* group_names, int group_c
     for (int g = 0; g < group_count; ++g)
         for (int c = 0; c < 3; ++c)
         {
-            char name[56];
-            snprintf(name, sizeof name, TY_GROUP_CHANNEL "%.*s.%c", TY_LIGHT_GROUP_NAME, group_names[g], "RGB"[c]);
+            char name[TY_GROUP_CHANNEL_SIZE];
+            ty_film_group_channel(group_names[g], c, name);
             size_t offset = offsetof(ty_pixel_sums, group) + (size_t)(3 * g + c) * sizeof(uint64_t);
             count = add_words(words, names, count, name, offset, 2);
         }
