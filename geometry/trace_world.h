@@ -82,8 +82,9 @@ static inline uint32_t ty_trace_prototype_of(const ty_trace_object* object, uint
 }
 // An instance within its object, before the object's own map.
 ty_affine ty_trace_inner_map(const ty_trace_object* object, uint32_t instance);
-// Prototype to world, where it lies or in scratch: a copy just written costs more to read than a hit's arithmetic.
+// Prototype to world where it lies nowhere: of what moves, or of two maps.
 ty_affine ty_trace_made_map(const ty_trace_object* object, uint32_t instance, float time);
+// The same of any, where it lies or in scratch: a copy just written costs more to read than a hit's arithmetic.
 static inline const ty_affine* ty_trace_to_world(const ty_trace_object* object, uint32_t instance, float time,
                                                  ty_affine* scratch)
 {

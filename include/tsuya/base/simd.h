@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sixteen floats side by side: AVX-512, two halves of AVX2, or plain loops, by what the including file is compiled for.
-// Every operation is the IEEE one, so that all three give the same bits. AVX2 counts with FMA only: files that include
-// this are compiled with it (tsuya_use_fma). TY_SIMD_PORTABLE forces the loops.
+// Every operation is the IEEE one, so that all three give the same bits. AVX2 counts with FMA only: files that compute
+// with this are compiled with it (tsuya_use_fma). TY_SIMD_PORTABLE forces the loops.
 #pragma once
 #include <math.h>
 #include <stdint.h>
