@@ -39,6 +39,8 @@ json_t* ty_render_stats_json(const ty_scene* scene, const ty_render_stats* stats
     json_object_set_new(root, "shadow_rays", count(stats->shadow_rays));
     json_object_set_new(root, "interior_rays", count(stats->interior_rays));
     json_object_set_new(root, "path_vertices", count(stats->path_vertices));
+    json_object_set_new(root, "walks_lost", count(stats->walks_lost));
+    json_object_set_new(root, "walks_cut", count(stats->walks_cut));
     json_object_set_new(root, "samples_per_second", json_real((double)stats->camera_rays / stats->seconds));
     json_object_set_new(root, "rays_per_second", json_real((double)rays / stats->seconds));
     json_object_set_new(root, "nonfinite_samples", count(stats->nonfinite_samples));

@@ -29,6 +29,7 @@ typedef struct ty_counters
 {
     _Alignas(64) uint64_t camera_rays;
     uint64_t path_rays, shadow_rays, interior_rays, path_vertices;
+    uint64_t walks_lost, walks_cut;
     uint64_t nonfinite_samples, saturated_samples;
     int first_nonfinite[3]; // x, y, sample; valid when nonfinite_samples > 0
 } ty_counters;

@@ -46,6 +46,15 @@ static bool scatter(const ty_integrator* in, const ty_bsdf* bsdf, const float u[
     return ty_bsdf_sample_wi(bsdf, u[2], (ty_vec2){u[0], u[1]}, &sample) && go_on(in, bsdf, &sample, u[3], p);
 }
 
+static void count_interior(const ty_bsdf* bsdf, ty_counters* counters)
+{
+    if (bsdf->kind != TY_BSDF_CDRF_EXIT)
+        return;
+    counters->interior_rays += bsdf->flights > 0 ? bsdf->flights : 1;
+    counters->walks_lost += bsdf->walk_end == TY_WALK_LOST;
+    counters->walks_cut += bsdf->walk_end == TY_WALK_CUT;
+}
+
 // A translucent body under a coat, seen by the camera: light comes by both, and the way on is one of them. Choosing
 // between them for the light as well would double the noise.
 static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf* body, ty_path* p,
@@ -68,7 +77,7 @@ static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_
     ty_sampler_8d(sampler, ty_group_scatter(p->bounce), u);
     const float inside[3] = {pair[0], pair[1], pair[3]}; // the direction gets the group's best pair
     bool lit = ty_bsdf_take_interior(body, &in->scene->shading, inside, &extra, &weight);
-    counters->interior_rays++;
+    count_interior(body, counters);
     ty_rgb beta = ty_rgb_mul(p->beta, weight);
     p->view.from = ty_path_light_point(in, body);
     if (lit)
@@ -100,10 +109,11 @@ static bool advance(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf*
         ty_rng extra = ty_sampler_extra(sampler, p->bounce);
         ty_sampler_4d(sampler, ty_group_interior(p->bounce), pair);
         const float interior[4] = {pair[2], pair[0], pair[1], pair[3]};
-        if (!ty_bsdf_resolve(bsdf, &in->scene->shading, interior, &extra, &weight))
+        bool lit = ty_bsdf_resolve(bsdf, &in->scene->shading, interior, &extra, &weight);
+        count_interior(bsdf, counters);
+        if (!lit)
             return false;
         p->beta = ty_rgb_mul(p->beta, weight);
-        counters->interior_rays += bsdf->kind == TY_BSDF_CDRF_EXIT;
     }
     float u[8];
     ty_sampler_8d(sampler, ty_group_scatter(p->bounce), u);

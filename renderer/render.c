@@ -208,6 +208,8 @@ static void sum_counters(const ty_counters* counters, int count, ty_render_stats
         stats->shadow_rays += c->shadow_rays;
         stats->interior_rays += c->interior_rays;
         stats->path_vertices += c->path_vertices;
+        stats->walks_lost += c->walks_lost;
+        stats->walks_cut += c->walks_cut;
         stats->saturated_samples += c->saturated_samples;
         if (c->nonfinite_samples &&
             (!stats->nonfinite_samples || comes_before(c->first_nonfinite, stats->first_nonfinite)))

@@ -80,7 +80,7 @@ static const char FILES[] =
     "| `assets` | name: `asset.mesh`, `asset.shape`, `asset.texture`, `asset.frames`, `asset.aggregate` or "
     "`asset.gltf` | what there "
     "is |\n"
-    "| `materials` | name: { model: surface or cdrf, ... } | what it is made of |\n"
+    "| `materials` | name: { model: surface, cdrf or walk, ... } | what it is made of |\n"
     "| `objects`, `lights` | lists of `object`, `light` | what is seen |\n\n"
     "A recipe has `tsuya: 1`, `kind:` (the name of its table: `aggregate`, `fill`, `roots`), `vars` and the keys of "
     "that "

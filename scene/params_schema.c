@@ -165,7 +165,7 @@ static bool is_keyed(const ty_param_table* table)
 {
     const ty_param_table* const tables[] = {ty_camera_params(),   ty_turntable_params(), ty_light_params(),
                                             ty_object_params(),   ty_surface_params(),   ty_cdrf_params(),
-                                            ty_moisture_params(), ty_soak_params()};
+                                            ty_moisture_params(), ty_soak_params(),      ty_walk_params()};
     for (int i = 0; i < TY_PARAM_COUNT(tables); ++i)
         if (tables[i] == table)
             return true;
@@ -266,6 +266,8 @@ static void add_definitions(ty_text* out)
             add_table(out, tables[i], "model", "surface");
         else if (tables[i] == ty_cdrf_params())
             add_table(out, tables[i], "model", "cdrf");
+        else if (tables[i] == ty_walk_params())
+            add_table(out, tables[i], "model", "walk");
         else
             add_table(out, tables[i], kind ? "kind" : NULL, kind);
         ty_text_add(out, i + 1 < count ? ",\n" : "\n");
@@ -294,7 +296,8 @@ char* ty_params_schema(void)
                    "\"#/$defs/asset.aggregate\"}, {\"$ref\": \"#/$defs/asset.gltf\"}]}},\n",
                    ty_shape_params()->name);
     ty_text_add(&out, "    \"materials\": {\"type\": \"object\", \"additionalProperties\": {\"anyOf\": [{\"$ref\": "
-                      "\"#/$defs/material.surface\"}, {\"$ref\": \"#/$defs/material.cdrf\"}]}},\n"
+                      "\"#/$defs/material.surface\"}, {\"$ref\": \"#/$defs/material.cdrf\"}, {\"$ref\": "
+                      "\"#/$defs/material.walk\"}]}},\n"
                       "    \"objects\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/object\"}},\n"
                       "    \"lights\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/light\"}}\n  },\n"
                       "  \"$defs\": {\n");

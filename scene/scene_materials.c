@@ -4,6 +4,8 @@
 #include "nearest.h"
 #include <string.h>
 
+#define TY_SKIPPED_MAX 63
+
 // An asset of that name, else a file; a name without a dot or slash can only be meant as an asset.
 static int find_texture(void* context, ty_node* name, bool is_data, bool by_uv, const int wrap[2])
 {
@@ -64,14 +66,17 @@ static void report_impossible(ty_loader* loader, const ty_node* node, const char
     ty_report(loader->errors, place, error->status, "material '%.100s': %.800s", name, error->text);
 }
 
-static void read_surface(ty_loader* loader, ty_node* node, int index)
+static ty_status create(int model, const void* def, ty_material** out, ty_error* error)
 {
-    static const char* const skip[] = {"model", NULL};
-    ty_surface_def def;
-    ty_error error;
-    if (ty_params_read(&loader->reader, node, ty_surface_params(), &def, skip) && !loader->checks_keys &&
-        ty_material_create_surface(&def, &loader->scene->materials[index], &error) != TY_OK)
-        report_impossible(loader, node, loader->scene->material_names[index], &error);
+    switch (model)
+    {
+    case 0:
+        return ty_material_create_surface(def, out, error);
+    case 1:
+        return ty_material_create_cdrf(def, out, error);
+    default:
+        return ty_material_create_walk(def, out, error);
+    }
 }
 
 // One of three ways to say it, and one place for the degree of cooking.
@@ -99,20 +104,46 @@ static bool read_moisture_source(ty_loader* loader, const ty_node* node, ty_mois
     return false;
 }
 
-static void read_cdrf(ty_loader* loader, ty_node* node, int index)
+// `cdrf` and `walk` read over what belongs to the other alone, so that a scene turns into its own reference by
+// `model`. Returns how many names were added.
+static int skip_names_of(const ty_param_table* table, const char** skip, int count)
 {
-    static const char* const skip[] = {"model", NULL};
-    ty_cdrf_def def;
+    const ty_param_table* other = table == ty_cdrf_params()   ? ty_walk_params()
+                                  : table == ty_walk_params() ? ty_cdrf_params()
+                                                              : NULL;
+    for (int i = 0; other && i < other->count && count < TY_SKIPPED_MAX; ++i)
+    {
+        bool common = false;
+        for (int k = 0; k < table->count; ++k)
+            common = common || strcmp(table->params[k].name, other->params[i].name) == 0;
+        if (!common)
+            skip[count++] = other->params[i].name;
+    }
+    return count;
+}
+
+static void read_model(ty_loader* loader, ty_node* node, int model, int index)
+{
+    const ty_param_table* const tables[] = {ty_surface_params(), ty_cdrf_params(), ty_walk_params()};
+    union
+    {
+        ty_surface_def surface;
+        ty_cdrf_def cdrf;
+        ty_walk_def walk;
+    } def;
+    const char* skip[TY_SKIPPED_MAX + 1] = {"model"};
+    skip[skip_names_of(tables[model], skip, 1)] = NULL;
     ty_error error;
-    if (ty_params_read(&loader->reader, node, ty_cdrf_params(), &def, skip) &&
-        read_moisture_source(loader, node, &def.moisture) && !loader->checks_keys &&
-        ty_material_create_cdrf(&def, &loader->scene->materials[index], &error) != TY_OK)
+    if (ty_params_read(&loader->reader, node, tables[model], &def, skip) &&
+        (model == 0 ||
+         read_moisture_source(loader, node, model == 1 ? &def.cdrf.moisture : &def.walk.common.moisture)) &&
+        !loader->checks_keys && create(model, &def, &loader->scene->materials[index], &error) != TY_OK)
         report_impossible(loader, node, loader->scene->material_names[index], &error);
 }
 
 static void read_material(ty_loader* loader, ty_node* node, int index)
 {
-    static const char* const models[] = {"surface", "cdrf", NULL};
+    static const char* const models[] = {"surface", "cdrf", "walk", NULL};
     const ty_param row = {.name = "model", .type = TY_PARAM_ENUM, .unit = "", .choices = models};
     char described[80];
     const char* name = loader->scene->material_names[index];
@@ -129,9 +160,9 @@ static void read_material(ty_loader* loader, ty_node* node, int index)
     int chosen = 0;
     if (!model)
         ty_report(loader->errors, node->place, TY_BAD_INPUT,
-                  "material '%.100s': missing key 'model', one of: surface, cdrf", name);
+                  "material '%.100s': missing key 'model', one of: surface, cdrf, walk", name);
     else if (ty_param_read(&loader->reader, model, &row, &chosen))
-        (chosen == 0 ? read_surface : read_cdrf)(loader, node, index);
+        read_model(loader, node, chosen, index);
 }
 
 void ty_read_material(ty_loader* loader, int index)

@@ -70,11 +70,14 @@ float ty_cdrf_spread(const ty_bsdf* b, float curvature)
     return b->material->cdrf.kernel == TY_CDRF_POISSON ? ty_cdrf_poisson_t(x) : ty_cdrf_gaussian_sigma(x);
 }
 
-static bool trace_interior(const ty_bsdf* b, const ty_shading_context* context, const float u[3], ty_rng* extra,
-                           ty_surface_point* exit)
+// Multiplies weight by what a walk left of the light.
+static bool trace_interior(ty_bsdf* b, const ty_shading_context* context, const float u[3], ty_rng* extra,
+                           ty_rgb* weight, ty_surface_point* exit)
 {
     if (!context || !context->world)
         return false;
+    if (b->material->model == TY_MODEL_WALK)
+        return ty_walk_exit(context, b, u, extra, weight, exit);
     if (b->material->cdrf.evaluate == TY_CDRF_DEPTH)
         return ty_cdrf_depth_exit(context, &b->point, b->mean_free_path, u, extra, exit);
     return ty_cdrf_probe_exit(context, b, u, exit);
@@ -111,7 +114,7 @@ bool ty_bsdf_take_interior(ty_bsdf* b, const ty_shading_context* context, const 
     float through = (1.0f - coat) / (1.0f - b->coat_weight * b->coat_row.average);
     *weight = ty_rgb_scale(b->color, through * kernel_gain(b, context));
     ty_surface_point exit;
-    if (trace_interior(b, context, u, extra, &exit))
+    if (trace_interior(b, context, u, extra, weight, &exit))
         b->point = exit;
     b->kind = TY_BSDF_CDRF_EXIT;
     b->bent = false; // the map is the coat's
@@ -187,6 +190,8 @@ ty_rgb ty_cdrf_albedo(const ty_bsdf* b)
 {
     if (b->kind == TY_BSDF_CDRF_EXIT)
         return b->color;
+    ty_rgb color =
+        b->material->model == TY_MODEL_WALK ? ty_rgb_mul(b->color, ty_walk_reflectance(&b->matter)) : b->color;
     float coat = ty_coat_albedo(b, ty_dot(b->wo, b->frame.n));
-    return ty_rgb_add(ty_rgb_grey(coat), ty_rgb_scale(b->color, 1.0f - coat));
+    return ty_rgb_add(ty_rgb_grey(coat), ty_rgb_scale(color, 1.0f - coat));
 }

@@ -31,5 +31,9 @@ float ty_cdrf_spread(const ty_bsdf* bsdf, float curvature); // t or sigma
 // Where a walk that enters at x leaves. u: three numbers. Returns false where x itself is the answer.
 bool ty_cdrf_depth_exit(const ty_shading_context* context, const ty_surface_point* x, float mean_free_path,
                         const float u[3], ty_rng* extra, ty_surface_point* exit);
+// The same by a random walk. Multiplies weight by what is left of the light, and notes in bsdf how the walk went.
+bool ty_walk_exit(const ty_shading_context* context, ty_bsdf* bsdf, const float u[3], ty_rng* extra, ty_rgb* weight,
+                  ty_surface_point* exit);
+ty_rgb ty_walk_reflectance(const ty_scattering* matter); // of a thick body
 bool ty_cdrf_probe_exit(const ty_shading_context* context, const ty_bsdf* bsdf, const float u[3],
                         ty_surface_point* exit);

@@ -165,6 +165,38 @@ ty_status ty_material_create_cdrf(const ty_cdrf_def* def, ty_material** out, ty_
     return TY_OK;
 }
 
+// What is within is said in one way; the least white is for measured matter to say.
+static ty_status check_walk(const ty_walk_def* d, ty_error* error)
+{
+    bool scattering = ty_walk_is_given(&d->scattering), color = ty_walk_is_given(&d->subsurface_color);
+    ty_status status = check_range("anisotropy", d->anisotropy, -0.99f, 0.99f, error);
+    if (status == TY_OK && d->preset > 0 && scattering)
+        return ty_error_set(error, TY_BAD_INPUT, "preset: says what `scattering` says; leave out one of them");
+    if (status == TY_OK && d->preset > 0 && color)
+        return ty_error_set(error, TY_BAD_INPUT, "preset: says what `subsurface_color` says; leave out one of them");
+    if (status == TY_OK && scattering && color)
+        return ty_error_set(error, TY_BAD_INPUT,
+                            "subsurface_color: `scattering` says what is within already; leave out one of them");
+    return status;
+}
+
+ty_status ty_material_create_walk(const ty_walk_def* def, ty_material** out, ty_error* error)
+{
+    *out = NULL;
+    ty_status status = check_walk(def, error);
+    if (status != TY_OK)
+        return status;
+    ty_cdrf_def common = def->common;
+    common.kernel = TY_CDRF_POISSON;
+    common.evaluate = TY_CDRF_DEPTH;
+    status = ty_material_create_cdrf(&common, out, error);
+    if (status != TY_OK)
+        return status;
+    (*out)->model = TY_MODEL_WALK;
+    (*out)->walk = *def;
+    return TY_OK;
+}
+
 void ty_material_destroy(ty_material* material)
 {
     if (!material)
@@ -179,7 +211,7 @@ void ty_material_destroy(ty_material* material)
 
 bool ty_material_is_subsurface(const ty_material* material)
 {
-    return material->model == TY_MODEL_CDRF;
+    return material->model == TY_MODEL_CDRF || material->model == TY_MODEL_WALK;
 }
 
 bool ty_material_needs_depth(const ty_material* material)
@@ -269,6 +301,9 @@ static void prepare_layers(const ty_material* material, const ty_shading_context
         break;
     case TY_MODEL_CDRF:
         ty_cdrf_prepare(material, context, out);
+        break;
+    case TY_MODEL_WALK:
+        ty_walk_prepare(material, context, out);
         break;
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Defaults and parameter tables of the materials.
 #include "material_private.h"
+#include <string.h>
 
 ty_surface_def ty_surface_def_default(void)
 {
@@ -47,6 +48,23 @@ ty_cdrf_def ty_cdrf_def_default(void)
         .normal_strength = 1.0f,
         .bump = ty_input_scalar(0.0f),
     };
+}
+
+ty_walk_def ty_walk_def_default(void)
+{
+    return (ty_walk_def){
+        .common = ty_cdrf_def_default(),
+        .scattering = ty_input_scalar(-1.0f),
+        .absorption = ty_input_scalar(0.0f),
+        .subsurface_color = ty_input_scalar(-1.0f),
+        .subsurface_radius = ty_input_scalar(1e-3f),
+        .subsurface_radius_scale = ty_input_scalar(1.0f),
+    };
+}
+
+static void walk_default(void* def)
+{
+    *(ty_walk_def*)def = ty_walk_def_default();
 }
 
 static void surface_default(void* def)
@@ -137,6 +155,34 @@ static const ty_param cdrf_rows[] = {
 };
 #undef DEF
 
+static const char* const boundary_names[] = {"diffuse", NULL};
+const char* const ty_walk_preset_names[] = {"none",      "apple", "chicken",  "cream",      "marble", "potato",
+                                            "skim_milk", "skin",  "soy_milk", "whole_milk", NULL};
+
+#define DEF ty_walk_def
+static const ty_param walk_rows[] = {
+    {.name = "boundary",
+     .type = TY_PARAM_ENUM,
+     .unit = "",
+     .choices = boundary_names,
+     .offset = offsetof(ty_walk_def, boundary),
+     .help = "diffuse: light enters and leaves by the cosine, as cdrf means it"},
+    {.name = "preset",
+     .type = TY_PARAM_ENUM,
+     .unit = "",
+     .choices = ty_walk_preset_names,
+     .offset = offsetof(ty_walk_def, preset),
+     .help = "measured scattering and absorption of a substance"},
+    ROW(scattering, COLOR, "1/mm", -1, 1e6, "reduced scattering coefficient; negative: not given"),
+    ROW(absorption, COLOR, "1/mm", 0, 1e6, "absorption coefficient, beside scattering"),
+    ROW(anisotropy, NUMBER, "", -0.99, 0.99,
+        "of the Henyey-Greenstein phase function: mean cosine; transport lengths stay, subsurface_radius is unreduced"),
+    ROW(subsurface_color, COLOR, "", -1, 1, "diffuse reflectance of a thick body; negative: not given"),
+    ROW(subsurface_radius, SCALAR, "mm", 1e-6, 1e6, "mean free path, beside subsurface_color"),
+    ROW(subsurface_radius_scale, COLOR, "", 1e-6, 1e6, "its factor by channel"),
+};
+#undef DEF
+
 const ty_param_table* ty_surface_params(void)
 {
     static const ty_param_table table = {
@@ -160,5 +206,37 @@ const ty_param_table* ty_cdrf_params(void)
         .params = cdrf_rows,
         .count = TY_PARAM_COUNT(cdrf_rows),
     };
+    return &table;
+}
+
+// The rows of `cdrf` first, but for those that only its kernels have.
+static int fill_walk_rows(ty_param* rows)
+{
+    int count = 0;
+    for (int i = 0; i < TY_PARAM_COUNT(cdrf_rows); ++i)
+    {
+        if (strcmp(cdrf_rows[i].name, "kernel") == 0 || strcmp(cdrf_rows[i].name, "evaluate") == 0)
+            continue;
+        rows[count] = cdrf_rows[i];
+        rows[count++].offset += offsetof(ty_walk_def, common);
+    }
+    for (int i = 0; i < TY_PARAM_COUNT(walk_rows); ++i)
+        rows[count++] = walk_rows[i];
+    return count;
+}
+
+const ty_param_table* ty_walk_params(void)
+{
+    static ty_param rows[TY_PARAM_COUNT(cdrf_rows) + TY_PARAM_COUNT(walk_rows)];
+    static ty_param_table table = {
+        .name = "material.walk",
+        .help =
+            "Translucent matter by random walks within each closed object: what cdrf is measured by. Keys that only "
+            "cdrf has are read over, so that `model` alone changes one into the other.",
+        .size = sizeof(ty_walk_def),
+        .set_default = walk_default,
+        .params = rows,
+    };
+    table.count = fill_walk_rows(rows); // the same values at each call
     return &table;
 }

@@ -11,13 +11,15 @@ typedef enum ty_material_model
 {
     TY_MODEL_SURFACE,
     TY_MODEL_CDRF,
+    TY_MODEL_WALK,
 } ty_material_model;
 
 struct ty_material
 {
     ty_material_model model;
     ty_surface_def surface;
-    ty_cdrf_def cdrf;
+    ty_cdrf_def cdrf; // of `walk`: what both have in common
+    ty_walk_def walk;
     ty_albedo_table* specular; // E of the dielectric specular of `surface`, or NULL where it has none
     ty_albedo_table* coat;     // E of the coat of `surface`, or of the specular reflection of `cdrf`
     bool anisotropic;          // the frame follows the texture's u
@@ -36,6 +38,12 @@ struct ty_material
 
 extern const ty_param_table ty_moisture_table;
 
+// A negative constant stands for nothing.
+static inline bool ty_walk_is_given(const ty_input* input)
+{
+    return input->texture_index >= 0 || input->attribute_index >= 0 || input->value.r >= 0.0f;
+}
+
 static inline ty_rgb ty_clamp_color(ty_rgb c)
 {
     return ty_rgb_make(ty_clamp(c.r, 0, 1), ty_clamp(c.g, 0, 1), ty_clamp(c.b, 0, 1));
@@ -44,6 +52,7 @@ static inline ty_rgb ty_clamp_color(ty_rgb c)
 // out holds point, frame, wo, entering and bent already; all else is zero.
 void ty_surface_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
 void ty_cdrf_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
+void ty_walk_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
 
 // Shading normals may turn away from a viewer who sees the triangle: bend them back until they face wo.
 static inline ty_vec3 ty_facing_normal(ty_vec3 n, ty_vec3 wo)

@@ -38,6 +38,8 @@ void ty_film_destroy(ty_film* film); // NULL is allowed
 typedef struct ty_render_stats
 {
     uint64_t camera_rays, path_rays, shadow_rays, interior_rays, path_vertices;
+    uint64_t walks_lost; // random walks that got out through a hole
+    uint64_t walks_cut;  // random walks that met the bound on their flights
     uint64_t nonfinite_samples, saturated_samples;
     int first_nonfinite[3]; // x, y, sample of the first dropped sample in (y, x, sample) order
     int samples_done;       // per pixel, complete passes

@@ -4,6 +4,7 @@
 #include <tsuya/base/math.h>
 #include <tsuya/base/rng.h>
 #include <tsuya/geometry/trace.h>
+#include <tsuya/shading/scattering.h>
 
 struct ty_material;
 struct ty_shading_context;
@@ -18,6 +19,15 @@ typedef enum ty_bsdf_kind
     TY_BSDF_CDRF_EXIT,  // resolved: Lambert with (1 - F) at the exit point
     TY_BSDF_CDRF_COAT,  // resolved: the specular coat at the entry point
 } ty_bsdf_kind;
+
+// How a random walk through a body ended.
+typedef enum ty_walk_end
+{
+    TY_WALK_LEFT,     // at the surface
+    TY_WALK_ABSORBED, // by chance, in proportion to what was left of it
+    TY_WALK_LOST,     // through a hole of the mesh
+    TY_WALK_CUT,      // by the bound on flights
+} ty_walk_end;
 
 // Directional albedo E(mu) of a reflecting layer at the point's roughness: up to four table slices and their weights.
 typedef struct ty_albedo_row
@@ -76,6 +86,11 @@ typedef struct ty_bsdf
     float sigma_slope;    // m; > 0: sigma = sigma_slope * curvature instead of the white-material law
     float curvature;      // 1/m, mean curvature in world units
     float second_form[3]; // local: II(t,t), II(t,b), II(b,b) in the frame, 1/m, convex positive
+
+    // walk: mean_free_path 0 = light leaves where it entered
+    ty_scattering matter;
+    uint32_t flights; // of the walk, once its interior is taken
+    ty_walk_end walk_end;
 } ty_bsdf;
 
 // Radiance is carried divided by the squared refractive index of its medium, so no factor appears at interfaces.

@@ -101,17 +101,41 @@ typedef struct ty_cdrf_def
     ty_input bump; // m, likewise
 } ty_cdrf_def;
 
+typedef enum ty_walk_boundary
+{
+    TY_WALK_DIFFUSE, // light enters and leaves by the cosine: what `cdrf` stands for
+} ty_walk_boundary;
+
+// One of preset, scattering, subsurface_color and (without any) color says what is within.
+typedef struct ty_walk_def
+{
+    ty_cdrf_def common;         // but for kernel and evaluate
+    int boundary;               // ty_walk_boundary
+    int preset;                 // 0 = none, else index into ty_walk_preset_names
+    ty_input scattering;        // 1/mm, reduced: (1 - anisotropy) times that of single scatterings; < 0: not given
+    ty_input absorption;        // 1/mm, beside scattering
+    float anisotropy;           // -.99..+.99
+    ty_input subsurface_color;  // diffuse reflectance of a thick body; < 0: not given
+    ty_input subsurface_radius; // m, mean free path
+    ty_input subsurface_radius_scale; // of the channels
+} ty_walk_def;
+
+extern const char* const ty_walk_preset_names[]; // NULL-terminated; the first is "none"
+
 ty_surface_def ty_surface_def_default(void);
 ty_cdrf_def ty_cdrf_def_default(void);
+ty_walk_def ty_walk_def_default(void);
 const ty_param_table* ty_surface_params(void); // "material.surface"
 const ty_param_table* ty_cdrf_params(void);    // "material.cdrf"
+const ty_param_table* ty_walk_params(void);    // "material.walk"
 
 // Copies def (strings excepted: indices must be resolved). Impossible combinations are TY_BAD_INPUT naming the field.
 TY_CHECKED ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** out, ty_error* error);
 TY_CHECKED ty_status ty_material_create_cdrf(const ty_cdrf_def* def, ty_material** out, ty_error* error);
+TY_CHECKED ty_status ty_material_create_walk(const ty_walk_def* def, ty_material** out, ty_error* error);
 void ty_material_destroy(ty_material* material); // NULL is allowed
 
-bool ty_material_is_subsurface(const ty_material* material); // cdrf: objects get closed_subsurface
+bool ty_material_is_subsurface(const ty_material* material); // cdrf, walk: objects get closed_subsurface
 bool ty_material_needs_depth(const ty_material* material);   // its prototypes need a depth field
 bool ty_material_is_emissive(const ty_material* material);
 

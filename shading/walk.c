@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random walks within one closed instance, traced in its prototype's space; distances are those of the world under any
+// map, because directions are carried over with their length.
+#include <tsuya/shading/walk.h>
+
+// Below this a walk goes on by chance.
+#define FAINT 0.25f
+
+typedef struct body
+{
+    const ty_world* world;
+    const ty_mesh* mesh;
+    uint32_t prototype;
+    ty_affine to_local;
+    int layers; // closed shells of the mesh that the walk is in
+} body;
+
+static body body_make(const ty_world* world, uint32_t object, uint32_t instance, float time)
+{
+    uint32_t prototype = ty_world_prototype(world, object, instance);
+    return (body){world, ty_world_prototype_mesh(world, prototype), prototype,
+                  ty_world_to_local(world, object, instance, time), 1};
+}
+
+static ty_vec3 triangle_normal(const ty_mesh* mesh, uint32_t triangle)
+{
+    const uint32_t* v = mesh->triangles[triangle];
+    const ty_vec3* q = mesh->positions;
+    return ty_cross(ty_sub(q[v[1]], q[v[0]]), ty_sub(q[v[2]], q[v[0]]));
+}
+
+static float rounding(ty_vec3 p)
+{
+    return (fabsf(p.x) + fabsf(p.y) + fabsf(p.z)) * 0x1p-20f;
+}
+
+// Just beneath a point of the surface, exact to rounding in the prototype's space however far away the instance is.
+static ty_vec3 beneath(const ty_mesh* mesh, const ty_surface_point* x)
+{
+    const uint32_t* v = mesh->triangles[x->triangle];
+    ty_vec3 p = ty_mul(mesh->positions[v[0]], 1.0f - x->u - x->v);
+    p = ty_mad(ty_mad(p, mesh->positions[v[1]], x->u), mesh->positions[v[2]], x->v);
+    return ty_mad(p, ty_normalize(triangle_normal(mesh, x->triangle)), -rounding(p));
+}
+
+typedef enum crossing
+{
+    CROSSING_NONE, // within the flight
+    CROSSING_OUT,
+    CROSSING_LOST,
+} crossing;
+
+// The end of the body along a flight. Shells that overlap within a mesh are one body: those entered have to be left.
+static crossing find_end(body* b, ty_vec3 p, ty_vec3 direction, float length, ty_hit* hit)
+{
+    float way = 0.0f;
+    for (;;)
+    {
+        if (!ty_world_intersect_prototype(b->world, b->prototype, p, direction, length - way, hit))
+            return length < TY_FLOAT_MAX ? CROSSING_NONE : CROSSING_LOST;
+        bool out = ty_dot(triangle_normal(b->mesh, hit->triangle), direction) >= 0.0f;
+        b->layers += out ? -1 : 1;
+        way += hit->t;
+        if (b->layers == 0)
+        {
+            hit->t = way;
+            return CROSSING_OUT;
+        }
+        ty_vec3 beyond = ty_mad(p, direction, hit->t);
+        // On by what rounding may have taken; a step of no length would meet the same triangle for ever.
+        float step = ty_max(rounding(beyond) / ty_length(direction), way * 0x1p-22f);
+        p = ty_mad(beyond, direction, step);
+        way += step;
+    }
+}
+
+static bool is_within(const ty_bounds* box, ty_vec3 p)
+{
+    return p.x >= box->low.x && p.y >= box->low.y && p.z >= box->low.z && p.x <= box->high.x && p.y <= box->high.y &&
+           p.z <= box->high.z;
+}
+
+// Faint walks end by chance, the rest stands for them.
+static bool survives(ty_rgb* beta, ty_rng* rng)
+{
+    float most = ty_rgb_max(*beta);
+    if (most >= FAINT)
+        return true;
+    if (ty_rng_float(rng) * FAINT >= most)
+        return false;
+    *beta = ty_rgb_scale(*beta, FAINT / most);
+    return true;
+}
+
+// p in the prototype's space, direction in the world. Sets of the exit what a hit says.
+static ty_walk_end walk_on(body* b, ty_vec3 p, float u, const ty_scattering* matter, ty_rng* rng, ty_walk* walk,
+                           ty_hit* hit)
+{
+    for (uint32_t i = 0; i < TY_WALK_MAX_FLIGHTS; ++i)
+    {
+        float u_channel = ty_rng_float(rng);
+        float length = ty_flight_sample(matter, &walk->beta, u_channel, i == 0 ? u : ty_rng_float(rng));
+        ty_vec3 direction = ty_map_vector(&b->to_local, walk->direction);
+        switch (find_end(b, p, direction, length, hit))
+        {
+        case CROSSING_OUT:
+            ty_flight_pass(matter, hit->t, &walk->beta);
+            return TY_WALK_LEFT;
+        case CROSSING_LOST:
+            return TY_WALK_LOST;
+        case CROSSING_NONE:
+            break;
+        }
+        ty_flight_scatter(matter, length, &walk->beta);
+        walk->scatterings++;
+        if (!survives(&walk->beta, rng))
+            return TY_WALK_ABSORBED;
+        p = ty_mad(p, direction, length);
+        if (!is_within(&b->mesh->bounds, p))
+            return TY_WALK_LOST;
+        float first = ty_rng_float(rng);
+        walk->direction = ty_phase_sample(matter->anisotropy, walk->direction, (ty_vec2){first, ty_rng_float(rng)});
+    }
+    return TY_WALK_CUT;
+}
+
+static ty_walk_end run(body* b, uint32_t object, uint32_t instance, float time, ty_vec3 p, float u,
+                       const ty_scattering* matter, ty_vec3 direction, ty_rng* rng, ty_walk* walk)
+{
+    ty_hit hit;
+    walk->beta = ty_rgb_grey(1.0f);
+    walk->direction = direction;
+    walk->scatterings = 0;
+    ty_walk_end end = walk_on(b, p, u, matter, rng, walk, &hit);
+    if (end != TY_WALK_LEFT)
+        return end;
+    hit.object = object;
+    hit.instance = instance;
+    hit.time = time;
+    ty_world_surface(b->world, &hit, &walk->exit);
+    return end;
+}
+
+ty_walk_end ty_walk_through(const ty_world* world, const ty_surface_point* x, const ty_scattering* matter,
+                            ty_vec3 direction, float u, ty_rng* rng, ty_walk* walk)
+{
+    body b = body_make(world, x->object, x->instance, x->time);
+    return run(&b, x->object, x->instance, x->time, beneath(b.mesh, x), u, matter, direction, rng, walk);
+}
+
+ty_walk_end ty_walk_from(const ty_world* world, uint32_t object, uint32_t instance, float time, ty_vec3 origin,
+                         const ty_scattering* matter, ty_vec3 direction, ty_rng* rng, ty_walk* walk)
+{
+    body b = body_make(world, object, instance, time);
+    return run(&b, object, instance, time, ty_map_point(&b.to_local, origin), ty_rng_float(rng), matter, direction, rng,
+               walk);
+}
