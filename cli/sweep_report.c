@@ -8,130 +8,142 @@
 #include <tsuya/base/memory.h>
 
 // Pixels that are compared with every cell as reference; beyond it only with the sweep's own.
-#define MOST_COMPARED 40e6
+#define MOST_COMPARED 20e6
+
+// A cell's picture, scene-linear and developed; no pixels where there is none or values are not finite.
+typedef struct measured_cell
+{
+    ty_image linear, shown;
+} measured_cell;
 
 typedef struct reporting
 {
     const ty_sweep_job* job;
     ty_page page;
-    ty_image* linear; // [cell_count], NULL pixels = no picture, or not finite
-    ty_image* shown;  // the same, developed
+    ty_color* color;
+    int factor;           // of the page's pictures
+    bool all;             // every cell is measured against every other; else only against the reference
+    measured_cell* cells; // [cell_count]
+    int* pictures;        // [cell_count], of the page, -1 = none
     ty_error* error;
 } reporting;
 
 // --- measures ---
+
+static void free_cell(measured_cell* cell)
+{
+    ty_image_term(&cell->linear);
+    ty_image_term(&cell->shown);
+}
 
 static bool same_size(const ty_image* a, const ty_image* b)
 {
     return a->pixels && b->pixels && a->width == b->width && a->height == b->height;
 }
 
-static ty_status measure(reporting* r, int reference, int test, double* flip)
+static ty_status add_measures(reporting* r, int reference, int test, double flip)
 {
-    const ty_image *a = &r->linear[reference], *b = &r->linear[test];
     ty_pixel_errors errors = {0};
-    ty_status status = ty_pixel_errors_measure(a, b, NULL, 0.0, &errors, r->error);
-    if (status == TY_OK && isnan(*flip)) // the same both ways
-    {
-        int64_t count = (int64_t)a->width * a->height;
-        float* map = TY_TRY_ALLOC(float, count);
-        status = map ? ty_flip_ldr(&r->shown[reference], &r->shown[test], true, TY_FLIP_PPD,
-                                   r->job->base.options.workers, map, r->error)
-                     : ty_error_set(r->error, TY_NO_MEMORY, "not enough memory to compare");
-        *flip = status == TY_OK ? ty_map_mean(map, NULL, count) : *flip;
-        ty_free(map);
-    }
+    ty_status status =
+        ty_pixel_errors_measure(&r->cells[reference].linear, &r->cells[test].linear, NULL, 0.0, &errors, r->error);
     if (status == TY_OK)
     {
-        errors.value[TY_METRIC_FLIP] = *flip;
+        errors.value[TY_METRIC_FLIP] = flip;
         errors.value[TY_METRIC_HDRFLIP] = (double)NAN;
         ty_page_add_pair(&r->page, reference, test, errors.value, 0);
     }
     return status;
 }
 
-static ty_status measure_all(reporting* r)
+// Both ways; FLIP is the same.
+static ty_status measure(reporting* r, int one, int other)
 {
-    int count = r->job->sweep.cell_count;
-    double pixels = 0.0;
-    for (int i = 0; i < count; i++)
+    const ty_image *a = &r->cells[one].shown, *b = &r->cells[other].shown;
+    if (!same_size(a, b))
     {
-        pixels += (double)r->linear[i].width * r->linear[i].height * (r->linear[i].pixels ? 1 : 0);
+        return TY_OK;
     }
-    bool all = 0.5 * pixels * count <= MOST_COMPARED;
-    ty_status status = TY_OK;
-    for (int a = 0; a < count && status == TY_OK; a++)
-    {
-        for (int b = a + 1; b < count && status == TY_OK; b++)
-        {
-            bool wanted = all || a == r->job->reference || b == r->job->reference;
-            double flip = (double)NAN;
-            if (wanted && same_size(&r->linear[a], &r->linear[b]))
-            {
-                status = measure(r, a, b, &flip);
-                status = status == TY_OK ? measure(r, b, a, &flip) : status;
-            }
-        }
-    }
-    return status;
+    int64_t count = (int64_t)a->width * a->height;
+    float* map = TY_TRY_ALLOC(float, count);
+    ty_status status = map ? ty_flip_ldr(a, b, true, TY_FLIP_PPD, r->job->base.options.workers, map, r->error)
+                           : ty_error_set(r->error, TY_NO_MEMORY, "not enough memory to compare");
+    double flip = status == TY_OK ? ty_map_mean(map, NULL, count) : 0.0;
+    ty_free(map);
+    status = status == TY_OK ? add_measures(r, one, other, flip) : status;
+    return status == TY_OK ? add_measures(r, other, one, flip) : status;
 }
 
 // --- pictures ---
 
-static ty_status develop(reporting* r)
+static ty_status develop(reporting* r, measured_cell* cell)
 {
     const ty_develop_def* def = &r->job->render.develop;
-    const char* source;
-    ty_color* color = NULL;
-    ty_status status = ty_color_create(ty_color_choose(def->ocio, NULL, &source), &color, r->error);
-    for (int i = 0; i < r->job->sweep.cell_count && status == TY_OK; i++)
+    int width = cell->linear.width, height = cell->linear.height;
+    ty_status status = ty_image_shrink(&cell->linear, width, height, &cell->shown, r->error); // a copy
+    return status == TY_OK ? ty_color_develop(r->color, def->display, def->view, def->exposure, cell->shown.pixels,
+                                              width * height, 3, r->error)
+                           : status;
+}
+
+// Reads a cell for its measures and puts it on the page.
+static ty_status add_picture(reporting* r, int index)
+{
+    const ty_sweep_cell* cell = &r->job->cells[index];
+    measured_cell* measured = &r->cells[index];
+    ty_status status = ty_sweep_picture(r->job, index, &measured->linear, r->error);
+    status = status == TY_OK ? ty_page_add(&r->page, &measured->linear, TY_PAGE_VIEW, r->factor, cell->corner,
+                                           &r->pictures[index], r->error)
+                             : status;
+    if (status == TY_OK && ty_image_find_non_finite(&measured->linear).count)
     {
-        const ty_image* from = &r->linear[i];
-        if (from->pixels)
+        free_cell(measured); // nothing to measure
+        return TY_OK;
+    }
+    return status == TY_OK ? develop(r, measured) : status;
+}
+
+static ty_status add_cells(reporting* r)
+{
+    int count = r->job->sweep.cell_count, reference = r->job->reference;
+    ty_status status = r->job->cells[reference].done ? add_picture(r, reference) : TY_OK;
+    for (int i = 0; i < count && status == TY_OK; i++)
+    {
+        if (i == reference || !r->job->cells[i].done)
         {
-            status = ty_image_shrink(from, from->width, from->height, &r->shown[i], r->error); // a copy
-            status = status == TY_OK ? ty_color_develop(color, def->display, def->view, def->exposure,
-                                                        r->shown[i].pixels, from->width * from->height, 3, r->error)
-                                     : status;
+            continue;
+        }
+        status = add_picture(r, i);
+        status = status == TY_OK ? measure(r, reference, i) : status;
+        if (!r->all)
+        {
+            free_cell(&r->cells[i]);
         }
     }
-    ty_color_destroy(color);
+    for (int a = 0; a < count && r->all; a++)
+    {
+        for (int b = a + 1; b < count && status == TY_OK; b++)
+        {
+            status = a != reference && b != reference ? measure(r, a, b) : TY_OK;
+        }
+    }
     return status;
 }
 
-static ty_status add_pictures(reporting* r, int indices[])
+static void plan(reporting* r)
 {
     int64_t pixels = 0;
-    int longest = 1;
+    int longest = 1, done = 0;
     for (int i = 0; i < r->job->sweep.cell_count; i++)
     {
         const int* size = r->job->cells[i].size;
         pixels += r->job->cells[i].done ? (int64_t)size[0] * size[1] : 0;
-        longest = size[0] > longest ? size[0] : size[1] > longest ? size[1] : longest;
+        done += r->job->cells[i].done;
+        longest = size[0] > longest ? size[0] : longest;
+        longest = size[1] > longest ? size[1] : longest;
+        r->pictures[i] = -1;
     }
-    int factor = ty_page_factor(pixels, longest);
-    ty_status status = TY_OK;
-    for (int i = 0; i < r->job->sweep.cell_count && status == TY_OK; i++)
-    {
-        indices[i] = -1;
-        if (!r->job->cells[i].done)
-        {
-            continue;
-        }
-        status = ty_sweep_picture(r->job, i, &r->linear[i], r->error);
-        status = status == TY_OK ? ty_page_add(&r->page, &r->linear[i], TY_PAGE_VIEW, factor, r->job->cells[i].corner,
-                                               &indices[i], r->error)
-                                 : status;
-        if (status == TY_OK && ty_image_find_non_finite(&r->linear[i]).count)
-        {
-            ty_image_term(&r->linear[i]); // nothing to measure
-        }
-    }
-    json_object_set_new(r->page.data, "metricHint",
-                        json_sprintf("Of the whole pictures, scene-linear; FLIP as the view shows them.%s",
-                                     factor > 1 ? " Pictures of this page are smaller: see above." : ""));
-    json_object_set_new(r->page.data, "factor", json_integer(factor));
-    return status;
+    r->factor = ty_page_factor(pixels, longest);
+    r->all = 0.5 * (double)pixels * done <= MOST_COMPARED;
 }
 
 // --- words ---
@@ -194,12 +206,11 @@ static void describe(reporting* r)
         seconds += job->cells[i].seconds > 0.0 ? job->cells[i].seconds : 0.0;
     }
     const int* size = job->cells[job->reference].size;
-    int factor = (int)json_integer_value(json_object_get(r->page.data, "factor"));
     char share[64] = "", fixed[TY_SWEEP_LABEL_MAX];
     ty_sweep_fixed(job, fixed);
-    if (factor > 1)
+    if (r->factor > 1)
     {
-        snprintf(share, sizeof share, ", here at 1/%d of their width", factor);
+        snprintf(share, sizeof share, ", here at 1/%d of their width", r->factor);
     }
     json_object_set_new(r->page.data, "facts",
                         json_sprintf("%d of %d cells, %d × %d pixels%s, rendered in %.1f s%s%s", done,
@@ -207,6 +218,9 @@ static void describe(reporting* r)
                                      fixed[0] ? "; in all of them " : "", fixed));
     json_object_set_new(r->page.data, "hint",
                         json_string("Click: as B. Shift and click, or r: as A. Arrow keys go from cell to cell."));
+    json_object_set_new(r->page.data, "metricHint",
+                        json_sprintf("Of the whole pictures, scene-linear; FLIP as the view shows them.%s",
+                                     r->all ? "" : " Measured against the first reference alone."));
     json_object_set_new(r->page.data, "footer", json_sprintf("tsuya %s · %s", TSUYA_VERSION, r->page.title));
     json_array_append_new(first, json_integer(job->reference));
     json_array_append_new(first,
@@ -218,42 +232,41 @@ static void describe(reporting* r)
 
 static ty_status fill(reporting* r)
 {
-    int count = r->job->sweep.cell_count;
-    int* indices = TY_ALLOC(int, count);
+    const char* source;
+    plan(r);
+    ty_status status =
+        ty_color_create(ty_color_choose(r->job->render.develop.ocio, NULL, &source), &r->color, r->error);
+    status = status == TY_OK ? add_cells(r) : status;
     json_t* cells = json_array();
-    ty_status status = add_pictures(r, indices);
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < r->job->sweep.cell_count; i++)
     {
-        json_array_append_new(cells, cell_json(r->job, i, indices[i]));
+        json_array_append_new(cells, cell_json(r->job, i, r->pictures[i]));
     }
     json_object_set_new(r->page.data, "cells", cells);
-    ty_free(indices);
     describe(r);
-    status = status == TY_OK ? develop(r) : status;
-    return status == TY_OK ? measure_all(r) : status;
+    return status;
 }
 
 ty_status ty_sweep_report(const ty_sweep_job* job, const char* path, ty_error* error)
 {
-    int count = job->sweep.cell_count;
-    reporting r = {.job = job, .error = error};
-    r.linear = TY_ALLOC(ty_image, count);
-    r.shown = TY_ALLOC(ty_image, count);
     static const bool metrics[TY_METRIC_COUNT] = {[TY_METRIC_RMSE] = true,
                                                   [TY_METRIC_RELMSE] = true,
                                                   [TY_METRIC_MAE] = true,
                                                   [TY_METRIC_PSNR] = true,
                                                   [TY_METRIC_FLIP] = true};
+    reporting r = {.job = job, .error = error};
+    r.cells = TY_ALLOC(measured_cell, job->sweep.cell_count);
+    r.pictures = TY_ALLOC(int, job->sweep.cell_count);
     ty_page_begin(&r.page, "sweep", job->arguments->positional[0], &job->render.develop, metrics);
     ty_status status = fill(&r);
     status = status == TY_OK ? ty_page_write(&r.page, path, error) : status;
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < job->sweep.cell_count; i++)
     {
-        ty_image_term(&r.linear[i]);
-        ty_image_term(&r.shown[i]);
+        free_cell(&r.cells[i]);
     }
-    ty_free(r.linear);
-    ty_free(r.shown);
+    ty_free(r.cells);
+    ty_free(r.pictures);
+    ty_color_destroy(r.color);
     ty_page_term(&r.page);
     return status;
 }
