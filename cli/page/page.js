@@ -350,8 +350,8 @@ function readPixel(event) {
   if (!comparable() || x < 0 || y < 0 || x >= canvas.width || y >= canvas.height) return;
   const at = 3 * (y * canvas.width + x), f = shownFactor(), corner = data.pictures[cells[state.a].picture].corner;
   const read = p => [0, 1, 2].map(c => fromHalf[p.halves[at + c]]);
-  const va = read(a), vb = read(b), line = v => v.map(n => n.toFixed(4).padStart(9)).join('');
-  $('readout').textContent = `pixel ${corner[0] + x * f},${corner[1] + y * f}   A${line(va)}   B${line(vb)}   B-A` +
+  const va = read(a), vb = read(b), line = v => v.map(n => n.toFixed(3).padStart(8)).join('');
+  $('readout').textContent = `${corner[0] + x * f},${corner[1] + y * f}  A${line(va)}  B${line(vb)}\nB-A` +
     line(vb.map((n, i) => n - va[i]));
 }
 

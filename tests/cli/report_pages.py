@@ -235,8 +235,9 @@ def test_damaged(browser):
 
 
 def main():
-    if not available():
-        return 1 if os.environ.get("TSUYA_BROWSER") == "required" else 77
+    wanted = os.environ.get("TSUYA_BROWSER", "if there") # or "required", or "none"
+    if wanted == "none" or not available():
+        return 1 if wanted == "required" else 77
     cells = json.load(open("grid/sweep.json"))["cells"]
     browser = Browser(1440, 900)
     try:
