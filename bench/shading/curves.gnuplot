@@ -33,6 +33,7 @@ unset multiplot
 set output folder."/errors.png"
 set multiplot layout 1,2 margins 0.06,0.985,0.13,0.9 spacing 0.08
 set logscale xy
+set key bottom right
 set xrange [0.4:70]
 set yrange [0.0001:0.4]
 set xtics (0.5, 1, 2, 4, 8, 20, 60)

@@ -12,11 +12,10 @@ static const struct
 {
     const char* name;
     group_fn* run;
+    bool quick; // part of the quick form
 } groups[] = {
-    {"furnace", bench_furnace},
-    {"sphere", bench_sphere},
-    {"ellipsoid", bench_ellipsoid},
-    {"shapes", bench_nine_shapes},
+    {"furnace", bench_furnace, true},    {"sphere", bench_sphere, true}, {"ellipsoid", bench_ellipsoid, true},
+    {"shapes", bench_nine_shapes, true}, {"heap", bench_heap, false},
 };
 
 #define GROUPS (int)(sizeof groups / sizeof *groups)
@@ -53,7 +52,7 @@ int main(int argc, char** argv)
         }
     }
     for (int i = 0; i < GROUPS; i++)
-        if (!any || chosen[i])
+        if (any ? chosen[i] : groups[i].quick || !options.quick)
         {
             groups[i].run(&options);
             fflush(stdout);

@@ -27,3 +27,4 @@ void bench_sphere(const bench_options* options);
 void bench_ellipsoid(const bench_options* options);
 void bench_nine_shapes(const bench_options* options);
 void bench_furnace(const bench_options* options);
+void bench_heap(const bench_options* options);
