@@ -238,9 +238,10 @@ static ty_status run(const ty_arguments* arguments)
 }
 
 static const ty_option options[] = {
-    {"vary", 'v', "NAME=VALUES", "a path as in --set, or a variable as in -D (repeatable: every combination)"},
+    {"vary", 'v', "NAME=VALUES",
+     "a path as in --set, or a variable as in -D: a,b,c | FROM:TO:COUNT[:log] (repeatable)"},
     {"zip", 0, NULL, "first values together, then second ones ..., instead of every combination"},
-    {"output", 'o', "FOLDER", "pictures, sheet and report"},
+    {"output", 'o', "FOLDER", "pictures, sheet.exr and .png, the report index.html, sweep.json"},
     {"most-cells", 0, "N", "refuse more (default 400)"},
     {"reference", 0, "CELL", "the cell that the others are measured against (default: the first)"},
     {"develop", 0, NULL, "also a PNG of every cell"},
@@ -258,7 +259,10 @@ const ty_command ty_command_sweep = {
     "sweep",
     "SCENE --vary NAME=VALUES... -o FOLDER [options]",
     "render a scene over values of its parameters",
-    "tsuya sweep scenes/rice_bowl --vary moisture=0.15:0.75:4 --vary camera.vfov=13,20 -o out/wet --quick",
+    "tsuya sweep scenes/rice_bowl --vary moisture=0.15:0.75:4 --vary camera.vfov=13,20 -o out/wet --quick\n"
+    "         tsuya sweep SCENE --vary materials.rice.mean_free_path=0.05:0.8:5:log -o out/path   # equal ratios\n"
+    "         tsuya sweep SCENE --vary 'materials.rice.color=[0.8, 0.8, 0.7],[0.5, 0.4, 0.2]' -o out/color\n"
+    "         tsuya sweep SCENE --zip --vary camera.vfov=13,26 --vary camera.f_stop=8,4 -o out/lens   # two cells",
     1,
     1,
     options,
