@@ -5,6 +5,7 @@
 #include "subject.h"
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <tsuya/base/workers.h>
 #include <tsuya/scene/scene.h>
@@ -21,7 +22,8 @@ typedef enum exit_model
     EXIT_LAMBERT,
     EXIT_PROBE,
     EXIT_DEPTH,
-    EXIT_WALK,
+    EXIT_WALK, // in this file
+    EXIT_MATERIAL_WALK,
     EXITS
 } exit_model;
 
@@ -90,7 +92,7 @@ static bool leave(const heap_job* job, const ty_surface_point* point, ty_vec3 wo
     if (!ty_bsdf_resolve(b, &scene->shading, u, rng, &weight))
         return false;
     *beta *= (double)weight.g;
-    if (grain && job->exits != EXIT_DEPTH && job->exits != EXIT_PROBE)
+    if (grain && (job->exits == EXIT_LAMBERT || job->exits == EXIT_WALK))
     {
         b->point = *point;
         if (job->exits == EXIT_WALK && !walk_mesh(scene->world, point, job->path, rng, &b->point))
@@ -221,29 +223,33 @@ static ty_scene* load_heap(const char* folder, double scale, ty_workers* workers
     return NULL;
 }
 
-static ty_material* grain_material(ty_cdrf_evaluate evaluate, float path)
+static ty_material* grain_material(exit_model exits, float path)
 {
-    ty_cdrf_def d = ty_cdrf_def_default();
+    ty_walk_def d = ty_walk_def_default();
     ty_material* material = NULL;
     ty_error error;
-    d.color = ty_input_scalar(COLOR);
-    d.specular_weight = ty_input_scalar(0);
-    d.mean_free_path = ty_input_scalar(path);
-    d.evaluate = (int)evaluate;
-    ty_status status = ty_material_create_cdrf(&d, &material, &error);
-    TY_ASSERT(status == TY_OK);
-    (void)status;
+    d.common.color = ty_input_scalar(COLOR);
+    d.common.specular_weight = ty_input_scalar(0);
+    d.common.mean_free_path = ty_input_scalar(path);
+    d.common.evaluate = exits == EXIT_PROBE ? TY_CDRF_PROBE : TY_CDRF_DEPTH;
+    ty_status status = exits == EXIT_MATERIAL_WALK ? ty_material_create_walk(&d, &material, &error)
+                                                   : ty_material_create_cdrf(&d.common, &material, &error);
+    if (status != TY_OK)
+    {
+        fprintf(stderr, "bench_shading: %s\n", error.text);
+        exit(1);
+    }
     return material;
 }
 
 static void report_path(heap_job* job, double scale, double mm, ty_workers* workers)
 {
-    static const char* const names[EXITS] = {"lambert", "probe", "depth", "walk"};
+    static const char* const names[EXITS] = {"lambert", "probe", "depth", "walk", "material walk"};
     heap_picture* pictures = TY_ALLOC(heap_picture, EXITS);
     char name[80];
     for (int e = 0; e < EXITS; e++)
     {
-        job->material[e] = grain_material(e == EXIT_PROBE ? TY_CDRF_PROBE : TY_CDRF_DEPTH, job->path);
+        job->material[e] = grain_material((exit_model)e, job->path);
         take_picture(job, (exit_model)e, workers, &pictures[e]);
     }
     const heap_picture *depth = &pictures[EXIT_DEPTH], *walk = &pictures[EXIT_WALK];
@@ -251,7 +257,7 @@ static void report_path(heap_job* job, double scale, double mm, ty_workers* work
     {
         light_sums rms = pixel_rms(&pictures[e], walk);
         const light_sums *m = &pictures[e].mean, *w = &walk->mean;
-        printf("  %4.2f  %4.2f  %-8s %8.4f %8.4f    %+6.2f %% %+6.2f %%     %6.4f %6.4f\n", scale, mm, names[e],
+        printf("  %4.2f  %4.2f  %-13s %8.4f %8.4f    %+6.2f %% %+6.2f %%     %6.4f %6.4f\n", scale, mm, names[e],
                m->environment, m->directional, 100 * (m->environment / w->environment - 1),
                100 * (m->directional / w->directional - 1), rms.environment, rms.directional);
     }
@@ -262,6 +268,11 @@ static void report_path(heap_job* job, double scale, double mm, ty_workers* work
     report_near(name, 100 * (depth->mean.directional / walk->mean.directional - 1), 0, 0.5);
     snprintf(name, sizeof name, "size %.2f, l %.2f mm: pixel RMS", scale, mm);
     report_most(name, fmax(rms.environment, rms.directional), 0.012, 0.015);
+    rms = pixel_rms(&pictures[EXIT_MATERIAL_WALK], walk);
+    snprintf(name, sizeof name, "size %.2f, l %.2f mm: material walk, mean, %%", scale, mm);
+    report_near(name, 100 * (pictures[EXIT_MATERIAL_WALK].mean.environment / walk->mean.environment - 1), 0, 0.3);
+    snprintf(name, sizeof name, "size %.2f, l %.2f mm: material walk, pixel RMS", scale, mm);
+    report_most(name, fmax(rms.environment, rms.directional), 0, 0.012);
     for (int e = 0; e < EXITS; e++)
         ty_material_destroy((ty_material*)job->material[e]);
     ty_free(pictures);
@@ -277,7 +288,7 @@ void bench_heap(const bench_options* options)
     report_title(
         "A heap of ellipsoids, touching (size 1) and overlapping (1.03), colour .95, from above: mean radiance "
         "under an environment / one light",
-        "  size  l mm  model     environ. direct.     against the walk        pixel RMS");
+        "  size  l mm  model          environ. direct.     against the walk        pixel RMS");
     for (int s = 0; s < 2; s++)
     {
         ty_scene* scene = load_heap("build/bench/heap", scales[s], workers);

@@ -18,6 +18,7 @@ typedef enum model
     LOCAL,
     PROBE,
     DEPTH,
+    WALK, // the material, against the walks of implicit.c
     MODELS
 } model;
 
@@ -94,10 +95,11 @@ static void write_truth(const char* path, const truth* t)
 }
 
 // path: in millimetres, or negative: times 3 V / S.
-static truth make_truth(const implicit_shape* shape, double path, const bench_options* options, ty_workers* workers)
+static truth make_truth(const implicit_shape* shape, double path, const bench_options* options, int quick_walks,
+                        ty_workers* workers)
 {
     char file[1024] = "";
-    truth t = {.shape = shape, .points = options->quick ? 150 : 1000, .walks = options->quick ? 150 : 1000};
+    truth t = {.shape = shape, .points = options->quick ? 200 : 1000, .walks = options->quick ? quick_walks : 1000};
     t.x = TY_ALLOC(vec, t.points);
     t.n = TY_ALLOC(vec, t.points);
     t.light = TY_ALLOC(halves, t.points);
@@ -191,10 +193,14 @@ static figures judge(const truth* t, const halves* light)
 static figures measure(const truth* t, const subject* s, model m, const bench_options* options, ty_workers* workers)
 {
     ty_cdrf_evaluate evaluate = m == DEPTH ? TY_CDRF_DEPTH : m == PROBE ? TY_CDRF_PROBE : TY_CDRF_LOCAL;
-    ty_material* material = m == LAMBERT ? NULL : subject_cdrf(evaluate, TY_CDRF_POISSON, t->path);
+    ty_material* material = m == LAMBERT ? NULL
+                            : m == WALK  ? subject_walk(t->path)
+                                         : subject_cdrf(evaluate, TY_CDRF_POISSON, t->path);
     model_job job = {t, s, material, options->quick ? 100 : 500, TY_ALLOC(halves, t->points)};
     if (m == LOCAL)
-        job.samples = s->mesh && t->shape->convex ? 1 : 20; // only its rays are random
+        job.samples = t->shape->convex ? 1 : 20; // only its rays are random
+    if (m == WALK)
+        job.samples = t->walks;
     ty_parallel_for(workers, t->points, 4, model_points, &job);
     figures f = judge(t, job.light);
     ty_free(job.light);
@@ -221,11 +227,11 @@ static ty_workers* make_workers(const bench_options* options)
 
 void bench_ellipsoid(const bench_options* options)
 {
-    static const char* const names[MODELS] = {"lambert", "local, poisson", "probe", "depth"};
+    static const char* const names[MODELS] = {"lambert", "local, poisson", "probe", "depth", "walk"};
     static const double paths[2] = {0.25, 0.6};
     static const double expected[2][MODELS][LIGHTS + 1] = {
-        {{.138, .030, .100, .100}, {.063, .029, .055, .051}, {.035, .009, .020, .024}, {.013, .005, .006, .009}},
-        {{.243, .052, .174, .175}, {.108, .048, .087, .084}, {.062, .020, .035, .043}, {.014, .006, .008, .010}}};
+        {{.138, .030, .100, .100}, {.063, .029, .055, .051}, {.035, .009, .020, .024}, {.013, .005, .006, .009}, {0}},
+        {{.243, .052, .174, .175}, {.108, .048, .087, .084}, {.062, .020, .035, .043}, {.014, .006, .008, .010}, {0}}};
     ty_workers* workers = make_workers(options);
     subject s;
     const implicit_shape* shape = &implicit_shapes[3];
@@ -235,7 +241,7 @@ void bench_ellipsoid(const bench_options* options)
         "  l mm  model               measured (pooled)            expected (pooled)            largest error of flux");
     for (int i = 0; i < 2; i++)
     {
-        truth t = make_truth(shape, paths[i], options, workers);
+        truth t = make_truth(shape, paths[i], options, 600, workers);
         figures f[MODELS];
         for (int m = 0; m < MODELS; m++)
         {
@@ -249,6 +255,8 @@ void bench_ellipsoid(const bench_options* options)
         report_most(name, f[DEPTH].pooled, expected[i][DEPTH][LIGHTS], 0.02);
         snprintf(name, sizeof name, "l %.2f mm: lambert, pooled", paths[i]);
         report_near(name, f[LAMBERT].pooled, expected[i][LAMBERT][LIGHTS], options->quick ? 0.02 : 0.006);
+        snprintf(name, sizeof name, "l %.2f mm: walk, pooled", paths[i]);
+        report_most(name, f[WALK].pooled, 0, options->quick ? 0.008 : 0.004);
         drop_truth(&t);
     }
     subject_term(&s);
@@ -263,17 +271,18 @@ static const int depth_expected[PATHS][IMPLICIT_COUNT] = {{1, 2, 7, 4, 3, 15, 9,
                                                           {3, 5, 12, 9, 7, 20, 8, 7, 9},
                                                           {6, 8, 10, 10, 8, 20, 12, 9, 11},
                                                           {8, 7, 14, 9, 7, 15, 32, 16, 12}};
-static const double mean_expected[PATHS][MODELS] = {{.036, 0, .0177, .0059},
-                                                    {.069, 0, .0247, .0073},
-                                                    {.134, 0, .0416, .0090},
-                                                    {.198, 0, .0598, .0104},
-                                                    {.262, 0, .0794, .0132}};
+static const double mean_expected[PATHS][MODELS] = {{.036, 0, .0177, .0059, 0},
+                                                    {.069, 0, .0247, .0073, 0},
+                                                    {.134, 0, .0416, .0090, 0},
+                                                    {.198, 0, .0598, .0104, 0},
+                                                    {.262, 0, .0794, .0132, 0}};
 static const double flux_expected[PATHS] = {0.017, 0.027, 0.028, 0.019, 0.037};
 static const double mean_limit[PATHS] = {0.012, 0, 0.015, 0, 0.02};
 
 typedef struct nine
 {
     figures f[PATHS][IMPLICIT_COUNT][MODELS];
+    double noise; // of the RMS of a shape
 } nine;
 
 static void report_nine(const nine* n, int path)
@@ -298,6 +307,8 @@ static void report_nine(const nine* n, int path)
     const double* e = mean_expected[path];
     printf("   lambert %.1f  probe %.1f  depth %.1f   flux %.1f %%\n", 1000 * e[LAMBERT], 1000 * e[PROBE],
            1000 * e[DEPTH], 100 * flux_expected[path]);
+    snprintf(name, sizeof name, "l / R %g: walk, mean of nine shapes", path_ratios[path]);
+    report_most(name, mean[WALK], 0, n->noise);
     if (mean_limit[path] == 0.0)
         return;
     snprintf(name, sizeof name, "l / R %g: depth, mean of nine shapes", path_ratios[path]);
@@ -346,6 +357,7 @@ void bench_nine_shapes(const bench_options* options)
 {
     static nine n;
     ty_workers* workers = make_workers(options);
+    n.noise = options->quick ? 0.008 : 0.004;
     report_title("Nine shapes as triangle meshes, white: RMS x 1000 of depth against walks, pooled over three lights",
                  NULL);
     printf("  l / R         ");
@@ -360,7 +372,7 @@ void bench_nine_shapes(const bench_options* options)
         {
             if (options->quick && mean_limit[p] == 0.0)
                 continue;
-            truth t = make_truth(shape, -path_ratios[p], options, workers);
+            truth t = make_truth(shape, -path_ratios[p], options, 100, workers);
             for (int m = 0; m < MODELS; m++)
                 if (m != LOCAL)
                     n.f[p][i][m] = measure(&t, &s, (model)m, options, workers);

@@ -3,13 +3,15 @@
 #include "subject.h"
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <tsuya/geometry/shape.h>
 
 static void must(ty_status status, const ty_error* error)
 {
-    if (status != TY_OK)
-        fprintf(stderr, "bench_shading: %s\n", error->text);
-    TY_ASSERT(status == TY_OK);
+    if (status == TY_OK)
+        return;
+    fprintf(stderr, "bench_shading: %s\n", error->text);
+    exit(1);
 }
 
 static ty_shape_def shape_def(const implicit_shape* shape, int divisions)
@@ -118,9 +120,11 @@ ty_surface_point subject_point(const subject* s, vec x, vec n)
     ty_ray ray = ty_ray_make(ty_mul(vec_float(vec_mad(x, n, 0.05)), MILLIMETRE), ty_neg(vec_float(n)), TY_FLOAT_MAX);
     ty_hit hit;
     ty_surface_point p;
-    bool found = ty_world_intersect(s->world, &ray, &hit);
-    TY_ASSERT(found);
-    (void)found;
+    if (!ty_world_intersect(s->world, &ray, &hit))
+    {
+        fprintf(stderr, "bench_shading: a mesh is not where its shape is\n");
+        exit(1);
+    }
     ty_world_surface(s->world, &hit, &p);
     return p;
 }
@@ -136,6 +140,18 @@ ty_material* subject_cdrf(ty_cdrf_evaluate evaluate, ty_cdrf_kernel kernel, doub
     d.kernel = (int)kernel;
     d.mean_free_path = ty_input_scalar((float)mean_free_path * MILLIMETRE);
     must(ty_material_create_cdrf(&d, &material, &error), &error);
+    return material;
+}
+
+ty_material* subject_walk(double mean_free_path)
+{
+    ty_walk_def d = ty_walk_def_default();
+    ty_material* material;
+    ty_error error = {0};
+    d.common.color = ty_input_scalar(1);
+    d.common.specular_weight = ty_input_scalar(0);
+    d.common.mean_free_path = ty_input_scalar((float)mean_free_path * MILLIMETRE);
+    must(ty_material_create_walk(&d, &material, &error), &error);
     return material;
 }
 

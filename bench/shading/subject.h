@@ -27,6 +27,8 @@ ty_surface_point subject_point(const subject* s, vec x, vec n);
 // White, uncoated; mean free path in millimetres.
 ty_material* subject_cdrf(ty_cdrf_evaluate evaluate, ty_cdrf_kernel kernel, double mean_free_path);
 
+ty_material* subject_walk(double mean_free_path); // white, by the material `walk`
+
 // Light of some directions that a point sends out, where a lit Lambert point facing one shows 1. Adds to light[i].
 void subject_light(const subject* s, const ty_material* material, const ty_surface_point* p, const float u[4],
                    ty_rng* rng, const vec* directions, int count, double* light);
