@@ -95,7 +95,7 @@ static ty_bsdf_parts local_parts(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi)
         return parts;
     }
     if (bsdf->kind == TY_BSDF_SURFACE)
-        parts.f[0] = ty_surface_eval_diffuse(bsdf, wi, &parts.pdf[0]);
+        parts.f[0] = ty_surface_eval_diffuse(bsdf, wo, wi, &parts.pdf[0]);
     else if (bsdf->kind == TY_BSDF_CDRF_LOCAL)
         parts.f[0] = ty_local_eval_diffuse(bsdf, wo, wi, &parts.pdf[0]);
     else if (bsdf->kind == TY_BSDF_CDRF_EXIT || bsdf->kind == TY_BSDF_MATTE)

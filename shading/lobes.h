@@ -6,7 +6,7 @@
 
 bool ty_surface_is_delta(const ty_bsdf* bsdf);
 ty_rgb ty_surface_eval(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf);
-ty_rgb ty_surface_eval_diffuse(const ty_bsdf* bsdf, ty_vec3 wi, float* pdf); // its share of eval
+ty_rgb ty_surface_eval_diffuse(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf); // its share of eval
 bool ty_surface_sample(const ty_bsdf* bsdf, ty_vec3 wo, float u_lobe, ty_vec2 u, ty_bsdf_sample* out);
 ty_rgb ty_surface_albedo(const ty_bsdf* bsdf);
 

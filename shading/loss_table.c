@@ -31,8 +31,8 @@ struct ty_loss_table
 typedef struct facets
 {
     ty_vec2 alpha;
-    float eta;       // 0 = they reflect everything
-    float reflected; // weight of the partial reflection
+    float eta;   // 0 = they reflect everything
+    float shine; // like this index
     int points;
 } facets;
 
@@ -40,8 +40,7 @@ typedef struct facets
 static float facet_albedo(const facets* f, ty_vec3 wo, ty_vec3 h)
 {
     ty_vec3 wi = ty_reflect(wo, h);
-    float r = f->eta > 0.0f ? ty_fresnel(ty_dot(wo, h), f->eta) : 1.0f;
-    r = r < 1.0f ? r * f->reflected : 1.0f;
+    float r = f->eta > 0.0f ? ty_fresnel_weighted(ty_dot(wo, h), f->eta, f->shine) : 1.0f;
     float sum = wi.z > 0.0f ? r * ty_ggx_g2(wo, wi, f->alpha) / ty_ggx_g1(wo, f->alpha) : 0.0f;
     if (r < 1.0f && ty_refract(wo, h, f->eta, &wi) && wi.z < 0.0f)
         sum += (1.0f - r) * ty_ggx_g1(wi, f->alpha);
@@ -84,7 +83,7 @@ static float roughness_node(const ty_loss_table* t, int i)
                               : t->roughness_low;
 }
 
-static void fill(ty_loss_table* t, float reflected)
+static void fill(ty_loss_table* t, float weight, float coat)
 {
     int count = t->rough_count * t->eta_count;
     t->slices = TY_ALLOC(float, count* MU_NODES);
@@ -94,7 +93,7 @@ static void fill(ty_loss_table* t, float reflected)
         int e = s / t->rough_count;
         facets f = {.alpha = ty_ggx_round(ty_ggx_alpha(roughness_node(t, s % t->rough_count))),
                     .eta = t->eta[e],
-                    .reflected = reflected,
+                    .shine = ty_shine(t->eta[e], weight, coat),
                     .points = t->points[e]};
         if (f.alpha.x == 0.0f) // mirrors lose nothing
             continue;
@@ -119,7 +118,7 @@ ty_loss_table* ty_loss_table_create_conductor(float roughness_low, float roughne
     ty_loss_table* t = create(roughness_low, roughness_high);
     t->eta_count = 1;
     t->points[0] = t->rough_count == 1 ? FINE : MEDIUM;
-    fill(t, 1.0f);
+    fill(t, 1.0f, 1.0f);
     return t;
 }
 
@@ -144,7 +143,7 @@ static void add_eta(ty_loss_table* t, float eta, int points)
 }
 
 ty_loss_table* ty_loss_table_create_dielectric(float roughness_low, float roughness_high, float ior_low, float ior_high,
-                                               float reflected)
+                                               float weight, float coat)
 {
     static const float side[SIDE_NODES] = {1.0005f, 1.03f, 1.1f, 1.25f, 1.6f, 2.2f, 3.0f};
     ty_loss_table* t = create(roughness_low, roughness_high);
@@ -157,7 +156,7 @@ ty_loss_table* ty_loss_table_create_dielectric(float roughness_low, float roughn
     const float own[4] = {ior_low, 1.0f / ior_low, ior_high, 1.0f / ior_high};
     for (int i = 0; i < 4; i++)
         add_eta(t, own[i], constant ? FINE : COARSE);
-    fill(t, reflected);
+    fill(t, weight, coat);
     return t;
 }
 

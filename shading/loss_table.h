@@ -8,9 +8,9 @@ typedef struct ty_loss_table ty_loss_table; // opaque, const after creation
 // Of facets that reflect everything. One slice where both roughnesses are the same, 12 otherwise. Deterministic.
 ty_loss_table* ty_loss_table_create_conductor(float roughness_low, float roughness_high);
 // Of facets that reflect and refract, for any index from 1/3 to 3; exact in the index between ior_low and ior_high (and
-// their inverses) at its ends. reflected: the specular weight of the boundary.
+// their inverses) at its ends. weight and coat: see ty_shine.
 ty_loss_table* ty_loss_table_create_dielectric(float roughness_low, float roughness_high, float ior_low, float ior_high,
-                                               float reflected);
+                                               float weight, float coat);
 void ty_loss_table_destroy(ty_loss_table* table); // NULL is allowed
 
 // The row for a point; table NULL gives the row of facets that lose nothing.

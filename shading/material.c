@@ -6,58 +6,12 @@
 #include <tsuya/base/memory.h>
 #include <tsuya/shading/cdrf.h>
 
-static bool is_constant(const ty_input* input)
-{
-    return input->texture_index < 0 && input->attribute_index < 0;
-}
-
-static bool is_zero(const ty_input* input)
-{
-    // A texture or attribute only scales the value.
-    return ty_rgb_is_black(input->value);
-}
-
-// The range of an input on which a table depends: one value, or all there are.
-static void table_range(const ty_input* input, float low, float high, float range[2])
-{
-    bool one = is_constant(input) && input->value.r >= low;
-    range[0] = one ? ty_min(input->value.r, high) : low;
-    range[1] = one ? range[0] : high;
-}
-
-static ty_albedo_table* make_table(const ty_input* weight, const float roughness[2], float eta_low, float eta_high)
-{
-    if (is_zero(weight) || eta_high <= 1.0f)
-        return NULL;
-    return ty_albedo_table_create(roughness[0], roughness[1], eta_low, eta_high);
-}
-
 static ty_status check_range(const char* name, float value, float low, float high, ty_error* error)
 {
     if (value >= low && value <= high)
         return TY_OK;
     return ty_error_set(error, TY_BAD_INPUT, "%s is %g: it must be %g..%g", name, (double)value, (double)low,
                         (double)high);
-}
-
-static void make_surface_tables(ty_material* m)
-{
-    const ty_surface_def* s = &m->surface;
-    float roughness[2], coat[2], ior[2], weight[2];
-    table_range(&s->specular_roughness, 0.0f, 1.0f, roughness);
-    table_range(&s->coat_roughness, 0.0f, 1.0f, coat);
-    table_range(&s->specular_ior, 1.0f, 3.0f, ior);
-    table_range(&s->specular_weight, 0.0f, 1.0f, weight);
-    m->specular = make_table(&s->specular_weight, roughness, ior[0], ior[1]);
-    m->coat = make_table(&s->coat_weight, coat, s->coat_ior, s->coat_ior);
-    if (roughness[1] < TY_SMOOTH_ROUGHNESS)
-        return;
-    bool metal = !is_zero(&s->base_metalness) && !is_zero(&s->specular_weight),
-         clear = !is_zero(&s->transmission_weight);
-    if (metal || (clear && s->thin_walled))
-        m->conductor = ty_loss_table_create_conductor(roughness[0], roughness[1]);
-    if (clear && !s->thin_walled)
-        m->dielectric = ty_loss_table_create_dielectric(roughness[0], roughness[1], ior[0], ior[1], weight[1]);
 }
 
 static bool has_map(const ty_input* normal, const ty_input* bump)
@@ -79,18 +33,18 @@ static ty_status check_surface(const ty_surface_def* def, ty_error* error)
     ty_status status = check_range("coat_ior", def->coat_ior, 1.0f, 3.0f, error);
     if (status == TY_OK)
         status = check_range("transmission_depth", def->transmission_depth, 0.0f, TY_FLOAT_MAX, error);
-    if (status == TY_OK && is_constant(&def->specular_ior))
+    if (status == TY_OK && ty_input_is_constant(&def->specular_ior))
         status = check_range("specular_ior", def->specular_ior.value.r, 1.0f, 3.0f, error);
-    if (status == TY_OK && is_constant(&def->opacity))
+    if (status == TY_OK && ty_input_is_constant(&def->opacity))
         status = check_range("opacity", def->opacity.value.r, 0.0f, 1.0f, error);
-    if (status == TY_OK && is_constant(&def->specular_roughness_anisotropy))
+    if (status == TY_OK && ty_input_is_constant(&def->specular_roughness_anisotropy))
         status =
             check_range("specular_roughness_anisotropy", def->specular_roughness_anisotropy.value.r, 0.0f, 1.0f, error);
     if (status == TY_OK)
         status = check_range("subsurface_anisotropy", def->subsurface_anisotropy, -1.0f, 1.0f, error);
     if (status == TY_OK)
         status = check_maps(def->normal_strength, &def->bump, error);
-    if (status == TY_OK && !def->thin_walled && !is_zero(&def->subsurface_weight))
+    if (status == TY_OK && !def->thin_walled && !ty_input_is_zero(&def->subsurface_weight))
         return ty_error_set(error, TY_BAD_INPUT,
                             "subsurface_weight is for `thin_walled: true`; bodies that light enters are `model: cdrf`");
     if (status == TY_OK && def->thin_walled && def->priority != 0)
@@ -100,9 +54,10 @@ static ty_status check_surface(const ty_surface_def* def, ty_error* error)
 
 static unsigned surface_traits(const ty_surface_def* s)
 {
-    bool clear = !is_zero(&s->transmission_weight);
-    bool smooth = !is_constant(&s->specular_roughness) || s->specular_roughness.value.r < TY_SMOOTH_ROUGHNESS;
-    bool passes = !is_constant(&s->opacity) || s->opacity.value.r < 1.0f || (clear && s->thin_walled && smooth);
+    bool clear = !ty_input_is_zero(&s->transmission_weight);
+    bool smooth = !ty_input_is_constant(&s->specular_roughness) || s->specular_roughness.value.r < TY_SMOOTH_ROUGHNESS;
+    bool passes =
+        !ty_input_is_constant(&s->opacity) || s->opacity.value.r < 1.0f || (clear && s->thin_walled && smooth);
     return (passes ? TY_TRAIT_TRANSPARENT : 0u) | (clear && !s->thin_walled ? TY_TRAIT_MEDIUM : 0u);
 }
 
@@ -116,14 +71,16 @@ ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** ou
     m->model = TY_MODEL_SURFACE;
     m->surface = *def;
     m->bent = has_map(&def->normal, &def->bump);
-    m->matte = is_zero(&def->specular_weight) && is_zero(&def->base_metalness) && is_zero(&def->transmission_weight) &&
-               is_zero(&def->coat_weight) && !def->thin_walled;
-    m->anisotropic = !m->matte && !is_zero(&def->specular_roughness_anisotropy);
-    m->base_is_constant = is_constant(&def->base_color);
-    m->base_color = ty_clamp_color(def->base_color.value);
-    m->emissive = !is_zero(&def->emission_luminance) && !is_zero(&def->emission_color);
+    m->matte = ty_input_is_zero(&def->specular_weight) && ty_input_is_zero(&def->base_metalness) &&
+               ty_input_is_zero(&def->transmission_weight) && ty_input_is_zero(&def->coat_weight) &&
+               ty_input_is_zero(&def->fuzz_weight) && ty_input_is_zero(&def->base_diffuse_roughness) &&
+               !def->thin_walled;
+    m->anisotropic = !m->matte && !ty_input_is_zero(&def->specular_roughness_anisotropy);
+    m->base_is_constant = ty_input_is_constant(&def->base_color) && ty_input_is_constant(&def->base_weight);
+    m->base_color = ty_rgb_scale(ty_clamp_color(def->base_color.value), ty_clamp(def->base_weight.value.r, 0.0f, 1.0f));
+    m->emissive = !ty_input_is_zero(&def->emission_luminance) && !ty_input_is_zero(&def->emission_color);
     m->traits = surface_traits(def);
-    make_surface_tables(m);
+    ty_surface_make_tables(m);
     *out = m;
     return TY_OK;
 }
@@ -150,9 +107,8 @@ ty_status ty_material_create_cdrf(const ty_cdrf_def* def, ty_material** out, ty_
     ty_material* m = TY_ALLOC(ty_material, 1);
     m->model = TY_MODEL_CDRF;
     m->cdrf = *def;
-    float roughness[2];
-    table_range(&def->specular_roughness, 0.0f, 1.0f, roughness);
-    m->coat = make_table(&def->specular_weight, roughness, def->specular_ior, def->specular_ior);
+    const float eta[2] = {def->specular_ior, def->specular_ior};
+    m->coat = ty_material_make_table(&def->specular_weight, &def->specular_roughness, eta);
     if (def->cooked >= 0.0f && def->moisture.cooked.value.r < 0.0f)
         m->cdrf.moisture.cooked = ty_input_scalar(def->cooked);
     m->optics_are_constant = ty_moisture_inputs_are_constant(&def->moisture);
@@ -203,6 +159,10 @@ void ty_material_destroy(ty_material* material)
         return;
     ty_albedo_table_destroy(material->specular);
     ty_albedo_table_destroy(material->coat);
+    ty_albedo_table_destroy(material->fuzz);
+    ty_albedo_table_destroy(material->coat_under_fuzz);
+    ty_albedo_table_destroy(material->base_under_coat);
+    ty_albedo_table_destroy(material->base_under_fuzz);
     ty_loss_table_destroy(material->conductor);
     ty_loss_table_destroy(material->dielectric);
     ty_poisson_table_destroy(material->poisson);
@@ -249,7 +209,7 @@ static ty_rgb through_sheet(const ty_material* material, const ty_shading_contex
     if (b.alpha.x > 0.0f || b.transmission_weight <= 0.0f)
         return ty_rgb_grey(0.0f);
     float mu = ty_dot(b.wo, b.frame.n);
-    return ty_rgb_scale(ty_surface_transmittance(&b, mu), ty_surface_across_coat(&b, mu, mu));
+    return ty_rgb_mul(ty_surface_transmittance(&b, mu), ty_layers_across(&b, mu, mu));
 }
 
 ty_transparency ty_material_transparency(const ty_material* material, const ty_shading_context* context,
@@ -260,7 +220,7 @@ ty_transparency ty_material_transparency(const ty_material* material, const ty_s
     const ty_surface_def* s = &material->surface;
     float opacity = ty_clamp(ty_input_float(&s->opacity, context, point), 0.0f, 1.0f);
     ty_transparency t = {ty_rgb_grey(1.0f - opacity), opacity};
-    if (s->thin_walled && opacity > 0.0f && !is_zero(&s->transmission_weight))
+    if (s->thin_walled && opacity > 0.0f && !ty_input_is_zero(&s->transmission_weight))
         t.through = ty_rgb_add(t.through, ty_rgb_scale(through_sheet(material, context, point, wo), opacity));
     return t;
 }
@@ -281,9 +241,8 @@ static void prepare_matte(const ty_material* material, const ty_shading_context*
     out->material = material;
     out->wo = wo;
     ty_shading_frame_prepare(material, context, out);
-    out->color = material->base_is_constant
-                     ? material->base_color
-                     : ty_clamp_color(ty_input_color(&material->surface.base_color, context, point));
+    out->color =
+        material->base_is_constant ? material->base_color : ty_surface_base_color(&material->surface, context, point);
     out->emission = ty_rgb_grey(0.0f);
     if (material->emissive && out->entering)
         out->emission = ty_material_emission(material, context, point);

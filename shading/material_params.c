@@ -6,7 +6,9 @@
 ty_surface_def ty_surface_def_default(void)
 {
     return (ty_surface_def){
+        .base_weight = ty_input_scalar(1.0f),
         .base_color = ty_input_scalar(0.8f),
+        .base_diffuse_roughness = ty_input_scalar(0.0f),
         .base_metalness = ty_input_scalar(0.0f),
         .specular_weight = ty_input_scalar(1.0f),
         .specular_color = ty_input_scalar(1.0f),
@@ -18,8 +20,13 @@ ty_surface_def ty_surface_def_default(void)
         .transmission_color = ty_input_scalar(1.0f),
         .transmission_depth = 0.0f,
         .coat_weight = ty_input_scalar(0.0f),
+        .coat_color = ty_input_scalar(1.0f),
         .coat_roughness = ty_input_scalar(0.0f),
         .coat_ior = 1.6f,
+        .coat_darkening = ty_input_scalar(1.0f),
+        .fuzz_weight = ty_input_scalar(0.0f),
+        .fuzz_color = ty_input_scalar(1.0f),
+        .fuzz_roughness = ty_input_scalar(0.5f),
         .emission_luminance = ty_input_scalar(0.0f),
         .emission_color = ty_input_scalar(1.0f),
         .opacity = ty_input_scalar(1.0f),
@@ -95,10 +102,12 @@ static void cdrf_default(void* def)
 
 #define DEF ty_surface_def
 static const ty_param surface_rows[] = {
+    ROW(base_weight, SCALAR, "", 0, 1, "factor of base_color"),
     ROW(base_color, COLOR, "", 0, 1, "albedo of the diffuse base, or reflectance of the metal"),
+    ROW(base_diffuse_roughness, SCALAR, "", 0, 1, "0 = Lambert; rougher is flatter, as clay, and deeper in colour"),
     ROW(base_metalness, SCALAR, "", 0, 1, "0 = dielectric, 1 = metal"),
-    ROW(specular_weight, SCALAR, "", 0, 1, "strength of the specular reflection"),
-    ROW(specular_color, COLOR, "", 0, 1, "tint of the dielectric reflection; of a metal at grazing angles"),
+    ROW(specular_weight, SCALAR, "", 0, 1, "factor of the reflectance at normal incidence"),
+    ROW(specular_color, COLOR, "", 0, 1, "tint of the dielectric reflection; of a metal at its edge, at 82 degrees"),
     ROW(specular_roughness, SCALAR, "", 0, 1, "GGX alpha is its square; below .02 it is a mirror"),
     ROW(specular_ior, SCALAR, "", 1, 3, "refractive index of the dielectric"),
     ROW(specular_roughness_anisotropy, SCALAR, "", 0, 1, "stretches highlights: smoother along the texture's v than u"),
@@ -107,8 +116,14 @@ static const ty_param surface_rows[] = {
     ROW(transmission_color, COLOR, "", 0, 1, "tint over transmission_depth, or per surface where that is 0"),
     ROW(transmission_depth, NUMBER, "m", 0, 1000, "way through the body after which transmission_color is reached"),
     ROW(coat_weight, SCALAR, "", 0, 1, "strength of the clear coat"),
+    ROW(coat_color, COLOR, "", 0, 1, "what the coat leaves of light that goes straight through it and back"),
     ROW(coat_roughness, SCALAR, "", 0, 1, "roughness of the coat"),
     ROW(coat_ior, NUMBER, "", 1, 3, "refractive index of the coat"),
+    ROW(coat_darkening, SCALAR, "", 0, 1,
+        "how much of the light counts that the coat sends back onto the base: deeper colour"),
+    ROW(fuzz_weight, SCALAR, "", 0, 1, "cover of fine fibres or dust over all else"),
+    ROW(fuzz_color, COLOR, "", 0, 1, "albedo of the fibres"),
+    ROW(fuzz_roughness, SCALAR, "", 0, 1, "0 = upright, seen at edges alone; 1 = as dust, seen all over"),
     ROW(emission_luminance, SCALAR, "W/(m^2 sr)", 0, 1e9, "radiance emitted on the outer side"),
     ROW(emission_color, COLOR, "", 0, 1000, "colour of the emission"),
     ROW(opacity, SCALAR, "", 0, 1, "0 = light passes as if nothing were there; shadows follow"),
@@ -187,7 +202,7 @@ const ty_param_table* ty_surface_params(void)
 {
     static const ty_param_table table = {
         .name = "material.surface",
-        .help = "Layered surface with the names of OpenPBR: a coat over metal, diffuse or clear dielectric.",
+        .help = "Layered surface with the names of OpenPBR: fuzz over a coat over metal, diffuse or clear dielectric.",
         .size = sizeof(ty_surface_def),
         .set_default = surface_default,
         .params = surface_rows,

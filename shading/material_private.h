@@ -22,9 +22,12 @@ struct ty_material
     ty_walk_def walk;
     ty_albedo_table* specular; // E of the dielectric specular of `surface`, or NULL where it has none
     ty_albedo_table* coat;     // E of the coat of `surface`, or of the specular reflection of `cdrf`
-    bool anisotropic;          // the frame follows the texture's u
-    bool bent;                 // a normal or bump map
-    bool matte;                // nothing but a diffuse base
+    ty_albedo_table* fuzz;     // E of the fuzz
+    // What layers keep of the reflections beneath them, NULL where there is no such layer.
+    ty_albedo_table *coat_under_fuzz, *base_under_coat, *base_under_fuzz;
+    bool anisotropic; // the frame follows the texture's u
+    bool bent;        // a normal or bump map
+    bool matte;       // nothing but a diffuse base
     bool emissive;
     bool base_is_constant; // of `surface`: base_color is, and then it is this:
     ty_rgb base_color;
@@ -44,10 +47,27 @@ static inline bool ty_walk_is_given(const ty_input* input)
     return input->texture_index >= 0 || input->attribute_index >= 0 || input->value.r >= 0.0f;
 }
 
+static inline bool ty_input_is_constant(const ty_input* input)
+{
+    return input->texture_index < 0 && input->attribute_index < 0;
+}
+
+static inline bool ty_input_is_zero(const ty_input* input)
+{
+    return ty_rgb_is_black(input->value); // a texture or attribute only scales the value
+}
+
 static inline ty_rgb ty_clamp_color(ty_rgb c)
 {
     return ty_rgb_make(ty_clamp(c.r, 0, 1), ty_clamp(c.g, 0, 1), ty_clamp(c.b, 0, 1));
 }
+
+// Tables of a reflection, NULL where it is none; and all those of a `surface` that holds its def.
+ty_albedo_table* ty_material_make_table(const ty_input* weight, const ty_input* roughness, const float eta[2]);
+void ty_surface_make_tables(ty_material* material);
+
+ty_rgb ty_surface_base_color(const ty_surface_def* def, const ty_shading_context* context,
+                             const ty_surface_point* point);
 
 // out holds point, frame, wo, entering and bent already; all else is zero.
 void ty_surface_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);

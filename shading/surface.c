@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `surface`: a coat over a mixture of metal, diffuse dielectric and transmitting dielectric. Preparation at a point.
+#include "diffuse.h"
 #include "fresnel.h"
 #include "material_private.h"
 #include "microfacet.h"
@@ -10,17 +11,11 @@ static float unit_input(const ty_input* input, const ty_shading_context* context
     return ty_clamp(ty_input_float(input, context, point), 0.0f, 1.0f);
 }
 
-// Coupling of the Lambert base with the reflecting layers above it (Kelemen & Szirmay-Kalos 2001), with the average of
-// both together: white stays white.
-static float layer_average(const ty_bsdf* b)
+ty_rgb ty_surface_base_color(const ty_surface_def* def, const ty_shading_context* context,
+                             const ty_surface_point* point)
 {
-    if (b->inside)
-        return 1.0f;
-    float coat = b->coat_weight * b->coat_row.average, base = b->specular_weight * b->specular_row.average,
-          common = 0.0f;
-    if (coat > 0.0f && base > 0.0f)
-        common = b->coat_weight * b->specular_weight * ty_albedo_row_common(&b->coat_row, &b->specular_row);
-    return 1.0f - coat - base + common;
+    ty_rgb color = ty_clamp_color(ty_input_color(&def->base_color, context, point));
+    return ty_rgb_scale(color, unit_input(&def->base_weight, context, point));
 }
 
 // Reflection of the base's boundary seen from mu, exact for mirrors.
@@ -29,10 +24,9 @@ static ty_rgb specular_albedo(const ty_bsdf* b, float mu)
     if (b->alpha.x == 0.0f || b->thin)
         return ty_surface_reflectance(b, mu);
     float share = b->inside ? b->transmission_weight * ty_clamp(ty_surface_boundary(b, mu), 0.1f, 0.9f)
-                            : b->specular_weight * ty_albedo_row_at(&b->specular_row, mu);
-    ty_rgb metal = ty_fresnel_schlick(b->color, b->specular_tint, mu);
-    return ty_rgb_add(ty_rgb_scale(b->specular_tint, (1.0f - b->metalness) * share),
-                      ty_rgb_scale(metal, b->metalness * b->specular_weight));
+                            : ty_albedo_row_at(&b->specular_row, mu);
+    ty_rgb metal = ty_rgb_mul(b->metal, ty_metal_fresnel(b->color, b->metal_dip, mu));
+    return ty_rgb_add(ty_rgb_scale(b->specular_tint, (1.0f - b->metalness) * share), metal);
 }
 
 static ty_rgb transmission_albedo(const ty_bsdf* b, float mu)
@@ -41,33 +35,39 @@ static ty_rgb transmission_albedo(const ty_bsdf* b, float mu)
         return ty_rgb_grey(0.0f); // passes unbent: ty_material_transparency
     if (b->alpha.x == 0.0f || b->thin)
         return ty_surface_transmittance(b, mu);
-    float share = b->inside ? ty_clamp(ty_surface_boundary(b, mu), 0.1f, 0.9f)
-                            : b->specular_weight * ty_albedo_row_at(&b->specular_row, mu);
+    float share = b->inside ? ty_clamp(ty_surface_boundary(b, mu), 0.1f, 0.9f) : ty_albedo_row_at(&b->specular_row, mu);
     return ty_rgb_scale(b->transmission, ty_surface_clear(b) * (1.0f - share));
 }
 
-// Albedos of the lobes seen from mu, as rgb. through: what the layers let through from there.
-static void lobe_albedos(const ty_bsdf* b, float mu, float through, ty_rgb albedo[TY_LOBE_COUNT])
+// Albedos of the lobes seen from mu, as rgb.
+static void lobe_albedos(const ty_bsdf* b, float mu, ty_rgb albedo[TY_LOBE_COUNT])
 {
-    float coat = b->inside ? 0.0f : ty_coat_albedo(b, mu), left = 1.0f - coat;
-    float diffuse = through * ty_surface_diffuse(b);
-    ty_rgb metal_lost = ty_rgb_scale(b->conductor_gain, TY_PI * b->conductor_loss.average);
-    ty_rgb near = ty_rgb_scale(b->specular_tint, b->near_gain * TY_PI * b->near_loss.average);
+    float left = b->layered ? ty_layers_left(b, mu) : 1.0f;
+    ty_rgb tint = ty_rgb_scale(b->layered ? ty_layers_tint(b, mu, mu) : ty_rgb_grey(1.0f), left);
+    ty_rgb diffuse = ty_rgb_scale(tint, ty_layers_diffuse(b, mu) * ty_surface_diffuse(b) / ty_max(left, 1e-6f));
+    ty_rgb metal_lost = ty_rgb_scale(b->conductor_gain, TY_PI * b->conductor_mean / ty_max(left, 1e-6f));
+    ty_rgb near = ty_rgb_scale(b->specular_tint, b->near_gain * TY_PI * b->near_mean / ty_max(left, 1e-6f));
     ty_rgb far = ty_rgb_scale(b->transmission, b->far_gain * TY_PI * b->far_loss.average);
-    albedo[TY_LOBE_COAT] = ty_rgb_grey(coat);
-    albedo[TY_LOBE_SPECULAR] = ty_rgb_scale(specular_albedo(b, mu), left);
-    albedo[TY_LOBE_DIFFUSE] = ty_rgb_scale(b->diffuse, diffuse);
-    albedo[TY_LOBE_TRANSMISSION] = ty_rgb_scale(transmission_albedo(b, mu), left);
-    albedo[TY_LOBE_LOST_ABOVE] = ty_rgb_scale(ty_rgb_add(metal_lost, near), left);
-    albedo[TY_LOBE_LOST_BELOW] = ty_rgb_scale(far, left);
-    albedo[TY_LOBE_DIFFUSE_BELOW] = ty_rgb_scale(b->diffuse_below, diffuse);
+    albedo[TY_LOBE_FUZZ] = albedo[TY_LOBE_COAT] = ty_rgb_grey(0.0f);
+    if (b->layered)
+    {
+        float fuzz = 1.0f - ty_layers_over_coat(b, mu, mu);
+        albedo[TY_LOBE_FUZZ] = ty_rgb_scale(b->fuzz_color, fuzz);
+        albedo[TY_LOBE_COAT] = ty_rgb_grey(1.0f - fuzz - left);
+    }
+    albedo[TY_LOBE_SPECULAR] = ty_rgb_mul(specular_albedo(b, mu), tint);
+    albedo[TY_LOBE_DIFFUSE] = ty_rgb_mul(ty_diffuse_albedo(b->diffuse, b->diffuse_roughness, mu), diffuse);
+    albedo[TY_LOBE_TRANSMISSION] = ty_rgb_mul(transmission_albedo(b, mu), tint);
+    albedo[TY_LOBE_LOST_ABOVE] = ty_rgb_mul(ty_rgb_add(metal_lost, near), tint);
+    albedo[TY_LOBE_LOST_BELOW] = ty_rgb_mul(far, tint);
+    albedo[TY_LOBE_DIFFUSE_BELOW] = ty_rgb_mul(b->diffuse_below, diffuse);
 }
 
-static void choose_probabilities(ty_bsdf* b, float mu, float through)
+static void choose_probabilities(ty_bsdf* b, float mu)
 {
     ty_rgb albedo[TY_LOBE_COUNT];
     float sum = 0.0f;
-    lobe_albedos(b, mu, through, albedo);
+    lobe_albedos(b, mu, albedo);
     for (int i = 0; i < TY_LOBE_COUNT; i++)
     {
         b->lobe_probability[i] = (albedo[i].r + albedo[i].g + albedo[i].b) * (1.0f / 3.0f);
@@ -94,6 +94,7 @@ static void prepare_transmission(const ty_surface_def* s, const ty_shading_conte
 static void prepare_diffuse(const ty_surface_def* s, const ty_shading_context* context, ty_bsdf* b)
 {
     b->diffuse = b->color;
+    b->diffuse_roughness = unit_input(&s->base_diffuse_roughness, context, &b->point);
     if (!b->thin)
         return;
     float weight = unit_input(&s->subsurface_weight, context, &b->point);
@@ -101,12 +102,6 @@ static void prepare_diffuse(const ty_surface_def* s, const ty_shading_context* c
     float through = 0.5f * (1.0f + s->subsurface_anisotropy);
     b->diffuse = ty_rgb_lerp(b->color, ty_rgb_scale(color, 1.0f - through), weight);
     b->diffuse_below = ty_rgb_scale(color, through * weight);
-}
-
-// The mean of Schlick's form over the cosine-weighted hemisphere.
-static float schlick_average(float f0, float f90)
-{
-    return f0 + (f90 - f0) * (1.0f / 21.0f);
 }
 
 // Of light that metal facets pass on among themselves each meeting takes its part: deeper colour where it is rough
@@ -120,13 +115,13 @@ static void prepare_conductor_loss(const ty_material* material, float roughness,
 {
     b->conductor_loss = ty_loss_table_row(material->conductor, roughness, 1.0f);
     float loss = b->conductor_loss.average, w = b->specular_weight;
-    if (!(loss > 0.0f))
+    b->conductor_mean = b->layered ? ty_layers_mean(b, ty_layers_metal) : loss;
+    if (!(b->conductor_mean > 0.0f))
         return;
-    float scale = b->metalness * ty_loss_row_at(&b->conductor_loss, mu) / (TY_PI * loss);
-    ty_rgb f0 = b->color, f90 = b->specular_tint;
-    b->conductor_gain = ty_rgb_make(scale * conductor_share(w * schlick_average(f0.r, f90.r), loss),
-                                    scale * conductor_share(w * schlick_average(f0.g, f90.g), loss),
-                                    scale * conductor_share(w * schlick_average(f0.b, f90.b), loss));
+    float scale = b->metalness * ty_layers_metal(b, mu) / (TY_PI * b->conductor_mean);
+    ty_rgb f = ty_rgb_scale(ty_metal_average(b->color, b->metal_dip), w);
+    b->conductor_gain = ty_rgb_make(scale * conductor_share(f.r, loss), scale * conductor_share(f.g, loss),
+                                    scale * conductor_share(f.b, loss));
 }
 
 // Mean reflectance of a boundary to a denser medium (fit of Kulla & Conty 2017).
@@ -141,7 +136,7 @@ static float boundary_average(float n)
 static float far_share(const ty_bsdf* b)
 {
     float near = b->near_loss.average, far = b->far_loss.average, n = ty_max(b->eta, 1.0f / b->eta);
-    float through = (1.0f - b->specular_weight * boundary_average(n)) * ty_min(near, far) / near;
+    float through = (1.0f - boundary_average(ty_max(b->shine, 1.0f / b->shine))) * ty_min(near, far) / near;
     return b->eta >= 1.0f ? through : through / (n * n);
 }
 
@@ -152,9 +147,9 @@ static void prepare_sheet_loss(const ty_material* material, float roughness, flo
     float loss = b->near_loss.average;
     if (!(loss > 0.0f))
         return;
-    float f = b->specular_weight * boundary_average(b->eta), scale = ty_loss_row_at(&b->near_loss, mu);
+    float f = boundary_average(b->shine), scale = ty_loss_row_at(&b->near_loss, mu);
     scale *= ty_surface_clear(b) / (TY_PI * loss);
-    b->near_gain = scale * 2.0f * f / (1.0f + f);
+    b->near_share = 2.0f * f / (1.0f + f);
     b->far_gain = scale * (1.0f - f) / (1.0f + f);
 }
 
@@ -166,8 +161,16 @@ static void prepare_dielectric_loss(const ty_material* material, float roughness
     if (!(near > 0.0f))
         return;
     float scale = ty_surface_clear(b) * ty_loss_row_at(&b->near_loss, mu), t = far > 0.0f ? far_share(b) : 0.0f;
-    b->near_gain = scale * (1.0f - t) / (TY_PI * near);
+    b->near_share = 1.0f - t;
     b->far_gain = far > 0.0f ? scale * t / (TY_PI * far) : 0.0f;
+}
+
+// The lobe of what a clear boundary sends up late.
+static void couple_near_loss(float mu, ty_bsdf* b)
+{
+    b->near_mean = b->layered ? ty_layers_mean(b, ty_layers_clear) : b->near_share * b->near_loss.average;
+    if (b->near_mean > 0.0f)
+        b->near_gain = ty_surface_clear(b) * ty_layers_clear(b, mu) / (TY_PI * b->near_mean);
 }
 
 static void prepare_loss(const ty_material* material, float roughness, ty_bsdf* b)
@@ -181,6 +184,8 @@ static void prepare_loss(const ty_material* material, float roughness, ty_bsdf* 
         prepare_sheet_loss(material, roughness, mu, b);
     else if (ty_surface_clear(b) > 0.0f)
         prepare_dielectric_loss(material, roughness, mu, b);
+    if (b->near_share > 0.0f)
+        couple_near_loss(mu, b);
 }
 
 static void prepare_coat(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
@@ -190,21 +195,77 @@ static void prepare_coat(const ty_material* material, const ty_shading_context* 
     if (b->coat_weight <= 0.0f)
         return;
     float roughness = unit_input(&s->coat_roughness, context, &b->point);
+    b->coat_roughness = roughness;
     b->coat_alpha = ty_ggx_alpha(roughness);
     b->coat_eta = s->coat_ior;
     b->coat_row = ty_albedo_table_row(material->coat, roughness, s->coat_ior);
+    if (b->fuzz_weight > 0.0f)
+        b->coat_under_fuzz = ty_albedo_table_row(material->coat_under_fuzz, roughness, b->fuzz_roughness);
+    const float blackest = 1e-4f;
+    ty_rgb c = ty_input_color(&s->coat_color, context, &b->point);
+    b->coat_log = ty_rgb_make(ty_ln(ty_clamp(c.r, blackest, 1.0f)), ty_ln(ty_clamp(c.g, blackest, 1.0f)),
+                              ty_ln(ty_clamp(c.b, blackest, 1.0f)));
+    b->tinted = !ty_rgb_is_black(b->coat_log);
+}
+
+static void prepare_fuzz(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
+{
+    const ty_surface_def* s = &material->surface;
+    b->fuzz_weight = unit_input(&s->fuzz_weight, context, &b->point);
+    if (b->fuzz_weight <= 0.0f)
+        return;
+    b->fuzz_roughness = unit_input(&s->fuzz_roughness, context, &b->point);
+    b->fuzz_color = ty_clamp_color(ty_input_color(&s->fuzz_color, context, &b->point));
+    b->fuzz_row = ty_albedo_table_row(material->fuzz, b->fuzz_roughness, 1.0f);
+}
+
+static void prepare_layers(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
+{
+    if (material->fuzz)
+        prepare_fuzz(material, context, b);
+    if (material->coat)
+        prepare_coat(material, context, b);
+    b->layered = !b->inside && (b->coat_weight > 0.0f || b->fuzz_weight > 0.0f);
+}
+
+// What goes back and forth between base and coat meets the base's colour again (OpenPBR Surface 1.1, "Darkening").
+// returned: share of the light from the base that the coat sends back.
+static ty_rgb darkened(ty_rgb color, float returned, float weight)
+{
+    float left = 1.0f - returned;
+    ty_rgb once = {color.r * left / (1.0f - color.r * returned), color.g * left / (1.0f - color.g * returned),
+                   color.b * left / (1.0f - color.b * returned)};
+    return ty_rgb_lerp(color, once, weight);
+}
+
+static void prepare_darkening(const ty_surface_def* s, const ty_shading_context* context, float roughness, ty_bsdf* b)
+{
+    float weight = b->coat_weight * unit_input(&s->coat_darkening, context, &b->point), n = b->coat_eta;
+    if (!(weight > 0.0f) || !(n > 1.0f))
+        return;
+    float diffuse = 1.0f - (1.0f - boundary_average(n)) / (n * n), mirror = ty_sqr((n - 1.0f) / (n + 1.0f));
+    b->diffuse = darkened(b->diffuse, diffuse, weight);
+    b->diffuse_below = darkened(b->diffuse_below, diffuse, weight);
+    ty_rgb metal = darkened(b->color, ty_lerp(mirror, diffuse, roughness), weight);
+    const float least = 1e-6f;
+    ty_rgb shade = {metal.r / ty_max(b->color.r, least), metal.g / ty_max(b->color.g, least),
+                    metal.b / ty_max(b->color.b, least)};
+    b->metal = ty_rgb_mul(b->metal, shade);
+    b->conductor_gain = ty_rgb_mul(b->conductor_gain, shade);
 }
 
 // Roughness, index and what follows from them. b->outside is the index of what is around the body.
-static void prepare_boundary(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
+static void prepare_boundary(const ty_material* material, const ty_shading_context* context, float roughness,
+                             ty_bsdf* b)
 {
     const ty_surface_def* s = &material->surface;
     const ty_surface_point* p = &b->point;
-    float roughness = unit_input(&s->specular_roughness, context, p);
     float ior = ty_clamp(ty_input_float(&s->specular_ior, context, p), 1.0f, 3.0f);
+    float cover = b->coat_weight > 0.0f ? ty_lerp(1.0f, b->coat_eta, b->coat_weight) : 1.0f;
     // Opaque bases keep the index of air: what lies beneath is coupled by a table for that.
     float relative = b->transmission_weight > 0.0f ? ior / b->outside : ior;
     b->eta = b->inside ? 1.0f / relative : relative;
+    b->shine = ty_shine(b->eta, b->specular_weight, cover);
     // Matched indices bend nothing, and a rough boundary would have no facet to speak of.
     if (fabsf(relative - 1.0f) < 0.001f && b->transmission_weight > 0.0f)
         b->alpha = ty_ggx_round(0.0f);
@@ -213,9 +274,33 @@ static void prepare_boundary(const ty_material* material, const ty_shading_conte
     else
         b->alpha = ty_ggx_round(ty_ggx_alpha(roughness));
     if (!b->inside)
-        b->specular_row = ty_albedo_table_row(material->specular, roughness, ior);
+        b->specular_row = ty_albedo_table_row(material->specular, roughness, ty_shine(ior, b->specular_weight, cover));
+    if (b->coat_weight > 0.0f)
+        b->base_under_coat = ty_albedo_table_row(material->base_under_coat, roughness, b->coat_roughness);
+    if (b->fuzz_weight > 0.0f)
+        b->base_under_fuzz = ty_albedo_table_row(material->base_under_fuzz, roughness, b->fuzz_roughness);
     // Stretching keeps the mean square of the slopes, and with it about what is lost.
     prepare_loss(material, roughness, b);
+}
+
+// Light to and from the diffuse base is what the layers leave, over its mean, so that white stays white (Kelemen &
+// Szirmay-Kalos 2001).
+static void couple_diffuse(float mu, ty_bsdf* b)
+{
+    if (b->inside || !(ty_surface_diffuse(b) > 0.0f))
+    {
+        b->diffuse_gain = 1.0f;
+        return;
+    }
+    float mean = b->layered ? ty_layers_mean(b, ty_layers_diffuse) : 1.0f - b->specular_row.average;
+    b->diffuse_gain = mean > 0.0f ? ty_layers_diffuse(b, mu) / mean : 0.0f;
+    if (!(b->diffuse_roughness > 0.0f) || !(b->layered || b->specular_row.count > 0))
+        return;
+    for (int i = 0; i < TY_MU_NODES; i++)
+        b->diffuse_left[i] = ty_mu_nodes[i].weight * ty_layers_diffuse(b, ty_mu_nodes[i].mu);
+    b->diffuse_excess = ty_diffuse_excess(b->diffuse_roughness, b->diffuse_left, mu) -
+                        ty_diffuse_excess_mean(b->diffuse_roughness, b->diffuse_left);
+    b->excessive = true;
 }
 
 void ty_surface_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
@@ -224,27 +309,31 @@ void ty_surface_prepare(const ty_material* material, const ty_shading_context* c
     const ty_surface_point* p = &b->point;
     b->kind = TY_BSDF_SURFACE;
     b->thin = s->thin_walled;
-    b->color = ty_clamp_color(ty_input_color(&s->base_color, context, p));
+    b->color = ty_surface_base_color(s, context, p);
     if (material->emissive && b->entering)
         b->emission = ty_material_emission(material, context, p);
     b->specular_tint = ty_clamp_color(ty_input_color(&s->specular_color, context, p));
     b->metalness = unit_input(&s->base_metalness, context, p);
     b->specular_weight = unit_input(&s->specular_weight, context, p);
+    b->metal = ty_rgb_grey(b->metalness * b->specular_weight);
+    if (b->metalness > 0.0f)
+        b->metal_dip = ty_metal_dip(b->color, b->specular_tint);
+    float roughness = unit_input(&s->specular_roughness, context, p), mu = ty_dot(b->wo, b->frame.n);
     prepare_transmission(s, context, b);
+    prepare_layers(material, context, b);
     prepare_diffuse(s, context, b);
-    prepare_boundary(material, context, b);
-    if (material->coat)
-        prepare_coat(material, context, b);
-    float mu = ty_dot(b->wo, b->frame.n), through = ty_surface_through_layers(b, mu);
-    b->layers_passed = through / layer_average(b);
-    choose_probabilities(b, mu, through);
+    prepare_boundary(material, context, roughness, b);
+    if (b->coat_weight > 0.0f)
+        prepare_darkening(s, context, roughness, b);
+    couple_diffuse(mu, b);
+    choose_probabilities(b, mu);
 }
 
 ty_rgb ty_surface_albedo(const ty_bsdf* b)
 {
     ty_rgb albedo[TY_LOBE_COUNT], sum = {0};
     float mu = ty_dot(b->wo, b->frame.n);
-    lobe_albedos(b, mu, ty_surface_through_layers(b, mu), albedo);
+    lobe_albedos(b, mu, albedo);
     for (int i = 0; i < TY_LOBE_COUNT; i++)
         sum = ty_rgb_add(sum, albedo[i]);
     return sum;

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // `surface`: evaluation and sampling of its lobes.
+#include "diffuse.h"
 #include "fresnel.h"
+#include "fuzz.h"
 #include "material_private.h"
 #include "microfacet.h"
 #include "surface_private.h"
 
-// A lowered specular weight cannot undo total reflection. From within, the coat's inner side sends back a part of what
-// the boundary lets out.
+// From within, the inner side of the layers sends back a part of what the boundary lets out.
 float ty_surface_boundary(const ty_bsdf* b, float cos_h)
 {
-    float f = ty_fresnel(cos_h, b->eta);
-    if (!(f < 1.0f))
-        return 1.0f;
-    f *= b->specular_weight;
-    if (b->inside && b->coat_weight > 0.0f)
-        f += (1.0f - f) * ty_coat_albedo(b, ty_safe_sqrt(1.0f - (1.0f - cos_h * cos_h) / (b->eta * b->eta)));
+    float f = ty_fresnel_weighted(cos_h, b->eta, b->shine);
+    if (f < 1.0f && b->inside && (b->coat_weight > 0.0f || b->fuzz_weight > 0.0f))
+    {
+        float outside = ty_safe_sqrt(1.0f - (1.0f - cos_h * cos_h) / (b->eta * b->eta));
+        f += (1.0f - f) * (1.0f - ty_layers_left(b, outside));
+    }
     return f;
 }
 
@@ -48,8 +49,8 @@ ty_rgb ty_surface_reflectance(const ty_bsdf* b, float cos_h)
     ty_rgb sum = ty_rgb_mul(b->specular_tint, dielectric_reflectance(b, cos_h));
     if (b->metalness > 0.0f)
     {
-        ty_rgb metal = ty_fresnel_schlick(b->color, b->specular_tint, cos_h);
-        sum = ty_rgb_add(sum, ty_rgb_scale(metal, b->metalness * b->specular_weight));
+        ty_rgb metal = ty_metal_fresnel(b->color, b->metal_dip, cos_h);
+        sum = ty_rgb_add(sum, ty_rgb_mul(metal, b->metal));
     }
     return sum;
 }
@@ -59,40 +60,19 @@ ty_rgb ty_surface_transmittance(const ty_bsdf* b, float cos_h)
 {
     if (b->thin)
         return ty_rgb_scale(ty_surface_sheet(b, cos_h).transmitted, ty_surface_clear(b));
-    float f = ty_fresnel(cos_h, b->eta);
-    return ty_rgb_scale(b->transmission, f < 1.0f ? ty_surface_clear(b) * (1.0f - f * b->specular_weight) : 0.0f);
-}
-
-// The smaller of both passages is reciprocal, exact for a mirror, and cannot create energy.
-float ty_surface_through_coat(const ty_bsdf* b, float mu_o, float mu_i)
-{
-    if (b->coat_weight <= 0.0f || b->inside)
-        return 1.0f;
-    return 1.0f - ty_max(ty_coat_albedo(b, mu_o), ty_coat_albedo(b, mu_i));
-}
-
-// The same share both ways: that of the direction outside.
-float ty_surface_across_coat(const ty_bsdf* b, float mu_o, float mu_i)
-{
-    return 1.0f - ty_coat_albedo(b, b->inside ? mu_i : mu_o);
-}
-
-float ty_surface_through_layers(const ty_bsdf* b, float mu)
-{
-    if (b->inside || !(b->coat_weight > 0.0f || b->specular_weight > 0.0f))
-        return 1.0f;
-    return (1.0f - ty_coat_albedo(b, mu)) * (1.0f - b->specular_weight * ty_albedo_row_at(&b->specular_row, mu));
+    float f = ty_fresnel_weighted(cos_h, b->eta, b->shine);
+    return ty_rgb_scale(b->transmission, ty_surface_clear(b) * (1.0f - f));
 }
 
 static float diffuse_coupling(const ty_bsdf* b, float mu_i)
 {
-    return b->layers_passed * ty_surface_through_layers(b, mu_i);
+    return b->diffuse_gain * ty_layers_diffuse(b, mu_i);
 }
 
 bool ty_surface_is_delta(const ty_bsdf* b)
 {
     const float* p = b->lobe_probability;
-    return !(p[TY_LOBE_DIFFUSE] + p[TY_LOBE_LOST_ABOVE] + p[TY_LOBE_DIFFUSE_BELOW] > 0.0f ||
+    return !(p[TY_LOBE_DIFFUSE] + p[TY_LOBE_LOST_ABOVE] + p[TY_LOBE_DIFFUSE_BELOW] + p[TY_LOBE_FUZZ] > 0.0f ||
              (p[TY_LOBE_COAT] > 0.0f && b->coat_alpha > 0.0f) ||
              (b->alpha.x > 0.0f && p[TY_LOBE_SPECULAR] + p[TY_LOBE_TRANSMISSION] > 0.0f));
 }
@@ -106,10 +86,9 @@ static const ty_loss_row* row_above(const ty_bsdf* b)
 // f of what the facets pass on among themselves and reflect in the end.
 static ty_rgb lost_reflectance(const ty_bsdf* b, float mu_o, float mu_i)
 {
-    float near = b->near_gain * ty_loss_row_at(&b->near_loss, mu_i);
-    ty_rgb lost = ty_rgb_add(ty_rgb_scale(b->conductor_gain, ty_loss_row_at(&b->conductor_loss, mu_i)),
-                             ty_rgb_scale(b->specular_tint, near));
-    return ty_rgb_scale(lost, ty_surface_through_coat(b, mu_o, mu_i));
+    float near = b->near_gain > 0.0f ? b->near_gain * ty_layers_clear(b, mu_i) : 0.0f;
+    ty_rgb metal = b->metalness > 0.0f ? ty_rgb_scale(b->conductor_gain, ty_layers_metal(b, mu_i)) : ty_rgb_grey(0.0f);
+    return ty_rgb_mul(ty_rgb_add(metal, ty_rgb_scale(b->specular_tint, near)), ty_layers_tint(b, mu_o, mu_i));
 }
 
 // Probability that a facet of a rough boundary was chosen and reflects. Where the base is clear the facet is drawn
@@ -130,14 +109,21 @@ static float facet_transmits(const ty_bsdf* b, float cos_h)
     return p[TY_LOBE_SPECULAR] + p[TY_LOBE_TRANSMISSION] - facet_reflects(b, cos_h);
 }
 
-ty_rgb ty_surface_eval_diffuse(const ty_bsdf* b, ty_vec3 wi, float* pdf)
+ty_rgb ty_surface_eval_diffuse(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
 {
     *pdf = 0.0f;
     if (!(b->lobe_probability[TY_LOBE_DIFFUSE] > 0.0f) || !(wi.z > 0.0f))
         return ty_rgb_grey(0.0f);
     float k = diffuse_coupling(b, wi.z) * ty_surface_diffuse(b);
     *pdf = b->lobe_probability[TY_LOBE_DIFFUSE] * wi.z * TY_INV_PI;
-    return ty_rgb_scale(b->diffuse, k * wi.z * TY_INV_PI);
+    ty_rgb f = ty_diffuse_value(b->diffuse, b->diffuse_roughness, wo, wi);
+    if (b->excessive)
+    {
+        float excess = b->diffuse_excess + ty_diffuse_excess(b->diffuse_roughness, b->diffuse_left, wi.z);
+        f = ty_rgb_add(f, ty_rgb_scale(b->diffuse, -excess * TY_INV_PI));
+    }
+    f = ty_rgb_scale(f, k * wi.z);
+    return b->tinted && b->layered ? ty_rgb_mul(f, ty_layers_tint(b, wo.z, wi.z)) : f;
 }
 
 static ty_rgb eval_reflection(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
@@ -147,20 +133,26 @@ static ty_rgb eval_reflection(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* p
     if (p[TY_LOBE_COAT] > 0.0f && b->coat_alpha > 0.0f)
     {
         float coat_pdf;
-        f = ty_coat_eval(b, wo, wi, &coat_pdf);
+        f = ty_rgb_scale(ty_coat_eval(b, wo, wi, &coat_pdf), ty_layers_over_coat(b, wo.z, wi.z));
         *pdf += p[TY_LOBE_COAT] * coat_pdf;
+    }
+    if (p[TY_LOBE_FUZZ] > 0.0f)
+    {
+        float fuzz = b->fuzz_weight * wi.z * ty_fuzz_value(b->fuzz_roughness, wo, wi);
+        f = ty_rgb_add(f, ty_rgb_scale(b->fuzz_color, fuzz));
+        *pdf += p[TY_LOBE_FUZZ] * 0.5f * TY_INV_PI;
     }
     if (p[TY_LOBE_SPECULAR] + p[TY_LOBE_TRANSMISSION] > 0.0f && b->alpha.x > 0.0f)
     {
         float lobe_pdf, cos_h, d = ty_ggx_reflect(wo, wi, b->alpha, &lobe_pdf, &cos_h);
-        float scale = d * ty_surface_through_coat(b, wo.z, wi.z);
-        f = ty_rgb_add(f, ty_rgb_scale(ty_surface_reflectance(b, cos_h), scale));
+        ty_rgb kept = ty_rgb_scale(ty_layers_over_base(b, wo.z, wi.z), d);
+        f = ty_rgb_add(f, ty_rgb_mul(ty_surface_reflectance(b, cos_h), kept));
         *pdf += facet_reflects(b, cos_h) * lobe_pdf;
     }
     if (p[TY_LOBE_DIFFUSE] > 0.0f)
     {
         float diffuse_pdf;
-        f = ty_rgb_add(f, ty_surface_eval_diffuse(b, wi, &diffuse_pdf));
+        f = ty_rgb_add(f, ty_surface_eval_diffuse(b, wo, wi, &diffuse_pdf));
         *pdf += diffuse_pdf;
     }
     if (p[TY_LOBE_LOST_ABOVE] > 0.0f)
@@ -182,18 +174,17 @@ static float transmit(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf, floa
 static ty_rgb eval_transmission(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
 {
     const float* p = b->lobe_probability;
-    float coat = ty_surface_across_coat(b, wo.z, -wi.z);
-    ty_rgb f = {0};
+    ty_rgb kept = ty_layers_across(b, wo.z, -wi.z), f = {0};
     if (p[TY_LOBE_TRANSMISSION] > 0.0f && b->alpha.x > 0.0f)
     {
         float lobe_pdf, cos_h, d = transmit(b, wo, wi, &lobe_pdf, &cos_h);
-        f = ty_rgb_scale(ty_surface_transmittance(b, cos_h), d * coat);
+        f = ty_rgb_mul(ty_surface_transmittance(b, cos_h), ty_rgb_scale(kept, d));
         *pdf += facet_transmits(b, cos_h) * lobe_pdf;
     }
     if (p[TY_LOBE_LOST_BELOW] > 0.0f)
     {
         float lost = b->far_gain * ty_loss_row_at(&b->far_loss, -wi.z) * -wi.z;
-        f = ty_rgb_add(f, ty_rgb_scale(b->transmission, lost * coat));
+        f = ty_rgb_add(f, ty_rgb_mul(b->transmission, ty_rgb_scale(kept, lost)));
         *pdf += p[TY_LOBE_LOST_BELOW] * ty_loss_row_pdf(&b->far_loss, -wi.z);
     }
     if (p[TY_LOBE_DIFFUSE_BELOW] > 0.0f)
@@ -219,18 +210,19 @@ static bool sample_delta(const ty_bsdf* b, ty_vec3 wo, int lobe, ty_bsdf_sample*
     float probability = b->lobe_probability[lobe];
     *out = (ty_bsdf_sample){.wi = ty_vec3_make(-wo.x, -wo.y, wo.z), .delta = true, .kind = TY_MASK_GLOSSY};
     if (lobe == TY_LOBE_COAT)
-        out->weight = ty_rgb_grey(b->coat_weight * ty_fresnel(wo.z, b->coat_eta) / probability);
+        out->weight = ty_rgb_grey(ty_layers_over_coat(b, wo.z, wo.z) * b->coat_weight * ty_fresnel(wo.z, b->coat_eta) /
+                                  probability);
     else if (lobe == TY_LOBE_SPECULAR)
-        out->weight =
-            ty_rgb_scale(ty_surface_reflectance(b, wo.z), ty_surface_through_coat(b, wo.z, wo.z) / probability);
+        out->weight = ty_rgb_mul(ty_surface_reflectance(b, wo.z),
+                                 ty_rgb_scale(ty_layers_over_base(b, wo.z, wo.z), 1.0f / probability));
     else
     {
         if (!ty_refract(wo, ty_vec3_make(0, 0, 1), b->eta, &out->wi))
             return false;
         out->transmitted = true;
         out->kind = TY_MASK_TRANSMISSION;
-        float coat = ty_surface_across_coat(b, wo.z, -out->wi.z);
-        out->weight = ty_rgb_scale(ty_surface_transmittance(b, wo.z), coat / probability);
+        ty_rgb kept = ty_layers_across(b, wo.z, -out->wi.z);
+        out->weight = ty_rgb_mul(ty_surface_transmittance(b, wo.z), ty_rgb_scale(kept, 1.0f / probability));
     }
     return true;
 }
@@ -280,6 +272,8 @@ static ty_vec3 sample_lobe(const ty_bsdf* b, ty_vec3 wo, int lobe, float u_rest,
         return ty_neg(around_normal(ty_loss_row_sample(&b->far_loss, u.x), u.y));
     case TY_LOBE_DIFFUSE_BELOW:
         return ty_neg(ty_sample_cosine(u));
+    case TY_LOBE_FUZZ: // even: fibres send light everywhere
+        return around_normal(ty_max(1.0f - u.x, 1e-6f), u.y);
     case TY_LOBE_DIFFUSE:
     case TY_LOBE_COUNT:
         break;

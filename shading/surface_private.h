@@ -12,6 +12,7 @@ typedef enum ty_surface_lobe
     TY_LOBE_LOST_ABOVE, // what facets pass on among themselves and reflect in the end
     TY_LOBE_LOST_BELOW, // or transmit
     TY_LOBE_DIFFUSE_BELOW,
+    TY_LOBE_FUZZ,
     TY_LOBE_COUNT
 } ty_surface_lobe;
 
@@ -39,8 +40,24 @@ typedef struct ty_sheet
 } ty_sheet;
 ty_sheet ty_surface_sheet(const ty_bsdf* bsdf, float cos_h);
 
-// What coat and specular let through to or from the base.
-float ty_surface_through_layers(const ty_bsdf* bsdf, float mu);
-// What the coat leaves to a lobe beneath that reflects, and to one that transmits.
-float ty_surface_through_coat(const ty_bsdf* bsdf, float mu_o, float mu_i);
-float ty_surface_across_coat(const ty_bsdf* bsdf, float mu_o, float mu_i);
+// --- layers: fuzz over coat over base ---
+// A reflection beneath a layer passes it twice, and what it keeps of both passages is the larger of its albedos there:
+// reciprocal, exact for mirrors, too much otherwise. By how much is known on average (the joint tables), and the
+// lobe at the bottom of the stack (diffuse, or what metal facets lose) takes what the rest leaves: nothing is lost.
+
+// What fuzz and coat leave of light from or to mu.
+float ty_layers_left(const ty_bsdf* bsdf, float mu);
+// Of that, what the reflection at the dielectric leaves to the diffuse base, and single facets of the metal to others.
+float ty_layers_diffuse(const ty_bsdf* bsdf, float mu);
+float ty_layers_metal(const ty_bsdf* bsdf, float mu);
+// What facets of a clear boundary send up late, with what the layers keep too much of its reflection.
+float ty_layers_clear(const ty_bsdf* bsdf, float mu);
+// What a reflection at the coat, and at the base, keeps on its way through what is above.
+float ty_layers_over_coat(const ty_bsdf* bsdf, float mu_o, float mu_i);
+ty_rgb ty_layers_over_base(const ty_bsdf* bsdf, float mu_o, float mu_i);
+// The colour of the coat on both ways.
+ty_rgb ty_layers_tint(const ty_bsdf* bsdf, float mu_o, float mu_i);
+// What light that is transmitted keeps: the same both ways, by the direction outside.
+ty_rgb ty_layers_across(const ty_bsdf* bsdf, float mu_o, float mu_i);
+// 2 * integral of what(mu) mu.
+float ty_layers_mean(const ty_bsdf* bsdf, float (*what)(const ty_bsdf*, float));

@@ -64,7 +64,7 @@ static void test_parameter_tables(void** state)
     check_table(ty_surface_params());
     check_table(ty_cdrf_params());
     check_table(ty_soak_params());
-    assert_int_equal(ty_surface_params()->count, 25);
+    assert_int_equal(ty_surface_params()->count, 32);
     assert_int_equal(ty_cdrf_params()->count, 12);
 }
 

@@ -12,7 +12,7 @@ struct ty_shading_context;
 // Closed set; each member in a file of its own, dispatched by a switch in bsdf.c.
 typedef enum ty_bsdf_kind
 {
-    TY_BSDF_SURFACE,    // layered: coat over (metal | dielectric specular over diffuse | transmission)
+    TY_BSDF_SURFACE,    // layered: fuzz over coat over (metal | dielectric specular over diffuse | transmission)
     TY_BSDF_MATTE,      // a surface that is nothing but Lambert
     TY_BSDF_CDRF,       // depth or probe, not yet resolved: call ty_bsdf_resolve
     TY_BSDF_CDRF_LOCAL, // kernel over the whole sphere at the point, plus coat
@@ -64,22 +64,35 @@ typedef struct ty_bsdf
     bool inside;                   // surface: wo is within a transmitting body
     bool thin;                     // surface: a sheet
     ty_rgb diffuse, diffuse_below; // surface: albedos of the diffuse base, reflected and (of sheets) transmitted
-    ty_rgb specular_tint;          // specular color
-    ty_rgb transmission;           // factor for one crossing
+    float diffuse_roughness;
+    ty_rgb specular_tint;    // of the dielectric
+    ty_rgb metal, metal_dip; // factor of the metal's reflection; what it falls short of Schlick's form
+    ty_rgb transmission;     // factor for one crossing
     float metalness, specular_weight, transmission_weight;
     ty_vec2 alpha;              // of the specular lobe along the frame's t and b; 0 = mirror
     float eta;                  // refractive index beyond the surface over that on wo's side
+    float shine;                // the same of the index it reflects by
     float outside;              // refractive index around the body
     float coat_weight;          // surface: of the coat; cdrf: of the specular reflection
     float coat_alpha, coat_eta; // alpha 0 = mirror
     ty_albedo_row specular_row; // E of the dielectric specular
     ty_albedo_row coat_row;     // E of the coat
-    float layers_passed;        // share of diffuse light along wo that passes coat and specular, over its average
     // What facets lose that are met once only goes back as lobes in proportion to what is lost along wi.
     ty_loss_row conductor_loss, near_loss, far_loss; // of the metal; of the clear boundary from wo's side and beyond
-    ty_rgb conductor_gain;                           // factor of conductor_loss(wi) cos
-    float near_gain, far_gain;                       // the same of near_loss and far_loss
-    float lobe_probability[7];                       // surface: ty_surface_lobe; local: coat, cosine, uniform
+    ty_rgb conductor_gain;                           // factor of conductor_loss(wi) cos (under layers: of its share)
+    float conductor_mean;                            // 2 * integral of that over mu
+    float near_share, near_mean, near_gain,
+        far_gain;                          // share of near_loss that goes back; the same of its lobe and of far_loss
+    float lobe_probability[8];             // surface: ty_surface_lobe; local: coat, cosine, uniform
+    bool layered, tinted, excessive;       // there is coat or fuzz; the coat has a colour; diffuse_excess counts
+    float diffuse_gain;                    // of diffuse light along wo, what the layers leave to it over its mean
+    ty_rgb coat_log;                       // logarithm of the coat's colour
+    float diffuse_left[8], diffuse_excess; // see ty_diffuse_excess: at the nodes; of wo, less the mean
+    float coat_roughness, fuzz_weight, fuzz_roughness;
+    ty_rgb fuzz_color;
+    ty_albedo_row fuzz_row; // E of the fuzz
+    // The larger of a layer's albedos towards wo and wi, on average over the reflection beneath it.
+    ty_albedo_row coat_under_fuzz, base_under_coat, base_under_fuzz;
 
     // cdrf
     float mean_free_path; // m, world

@@ -16,10 +16,12 @@ typedef struct ty_depth_field ty_depth_field; // opaque: per-vertex depth and cu
 // Names follow OpenPBR Surface.
 typedef struct ty_surface_def
 {
-    ty_input base_color;      // albedo of the diffuse base, or reflectance of the metal
-    ty_input base_metalness;  // 0..1
-    ty_input specular_weight; // 0..1
-    ty_input specular_color;
+    ty_input base_weight;                   // 0..1, factor of base_color
+    ty_input base_color;                    // albedo of the diffuse base, or reflectance of the metal
+    ty_input base_diffuse_roughness;        // 0..1: 0 is Lambert
+    ty_input base_metalness;                // 0..1
+    ty_input specular_weight;               // 0..1: of the reflectance at normal incidence
+    ty_input specular_color;                // tint of the dielectric; of a metal at 82 degrees
     ty_input specular_roughness;            // 0..1; GGX alpha = roughness^2; below .02 it is a mirror
     ty_input specular_ior;                  // 1..3
     ty_input specular_roughness_anisotropy; // 0..1: longer along the texture's u, smaller across
@@ -28,8 +30,13 @@ typedef struct ty_surface_def
     ty_input transmission_color; // tint at normal passage of transmission_depth, or per interface when that is 0
     float transmission_depth;    // m
     ty_input coat_weight;
+    ty_input coat_color; // what is left of light after going through it and back, straight
     ty_input coat_roughness;
     float coat_ior;
+    ty_input coat_darkening; // 0..1: how much of what it reflects back onto the base counts
+    ty_input fuzz_weight;
+    ty_input fuzz_color;
+    ty_input fuzz_roughness;     // 0..1: how far the fibres stray
     ty_input emission_luminance; // radiance
     ty_input emission_color;
     ty_input opacity;            // 0..1, geometry_opacity: light passes the rest unbent
