@@ -361,6 +361,54 @@ static void fast_path_cuts_nothing(void** state)
     ty_aggregate_destroy(heap);
 }
 
+// A ray that one of two heaps does not see meets the other as if that were alone.
+static void masks_hide_instances(void** state)
+{
+    (void)state;
+    ty_aggregate* heap[2] = {make_heap(4), make_heap(5)};
+    ty_affine identity = ty_affine_identity();
+    const ty_object_flags unlit = {.mask = TY_MASK_OPAQUE & ~TY_MASK_SHADOW};
+    ty_world* world[2]; // of both, and of the second
+    for (int alone = 0; alone < 2; alone++)
+    {
+        ty_world_def def = ty_world_def_default();
+        ty_error error;
+        uint32_t object;
+        assert_int_equal(ty_world_create(&def, &world[alone], &error), TY_OK);
+        for (int k = alone; k < 2; k++)
+            assert_int_equal(ty_world_add_aggregate(world[alone], heap[k], ty_motion_at_rest(&identity),
+                                                    k ? opaque : unlit, &object, &error),
+                             TY_OK);
+        assert_int_equal(ty_world_commit(world[alone], &error), TY_OK);
+    }
+    ty_rng rng = ty_rng_make((ty_seed){17}, 0, 0);
+    int hits = 0, seen[2] = {0};
+    for (int i = 0; i < RAYS; i++)
+    {
+        ty_ray ray = random_ray(&rng, i);
+        ty_hit both, one;
+        ray.mask = TY_MASK_SHADOW;
+        bool found = ty_world_intersect(world[1], &ray, &one), dark = ty_world_occluded(world[1], &ray);
+        assert_int_equal(ty_world_intersect(world[0], &ray, &both), found);
+        assert_int_equal(ty_world_occluded(world[0], &ray), dark);
+        if (found)
+        {
+            one.object = 1;
+            assert_memory_equal(&both, &one, sizeof both);
+            hits++;
+        }
+        ray.mask = TY_MASK_DIFFUSE;
+        if (ty_world_intersect(world[0], &ray, &both))
+            seen[both.object]++;
+    }
+    assert_true(hits > RAYS / 4 && seen[0] > RAYS / 10 && seen[1] > RAYS / 10);
+    for (int k = 0; k < 2; k++)
+    {
+        ty_world_destroy(world[k]);
+        ty_aggregate_destroy(heap[k]);
+    }
+}
+
 // Meshes that stand where they are and are no instances: found, skipped, masked and seen from outside only like those.
 static void meshes_are_like_instances(void** state)
 {
@@ -598,6 +646,7 @@ int main(void)
         cmocka_unit_test(far_from_the_origin),
         cmocka_unit_test(fast_path_cuts_nothing),
         cmocka_unit_test(widths_are_one),
+        cmocka_unit_test(masks_hide_instances),
         cmocka_unit_test(meshes_are_like_instances),
         cmocka_unit_test(horizons_hold),
         cmocka_unit_test(numbering),

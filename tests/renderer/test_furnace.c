@@ -7,21 +7,28 @@ static const char furnace[] = "tsuya: 1\n"
                               "film: { size: [24, 24], filter: box, filter_width: 1, half: false }\n"
                               "render: { samples: %d, max_depth: 256, roulette_depth: 256, seed: 5 }\n"
                               "camera: { position: [0, 0, 0.4], look_at: [0, 0, 0], vfov: 10 }\n"
-                              "assets: { ball: { shape: sphere, radius: 0.03, divisions: 96 } }\n"
-                              "materials: { m: { %s } }\n"
-                              "objects: [ { mesh: ball, material: m } ]\n"
+                              "assets: { ball: { shape: sphere, radius: 0.03, divisions: 96 }, floor: { shape: plane, "
+                              "size: [2, 0, 2] } }\n"
+                              "materials: { m: { %s }, white: { model: surface, base_color: 1, "
+                              "specular_weight: 0 } }\n"
+                              "objects: [ { mesh: ball, material: m }%s ]\n"
                               "lights: [ { type: environment, radiance: 0.5 } ]\n";
 
-// Mean over the disc of the ball, relative to the light.
-static double gain(const char* material, int samples)
+// Mean over the disc of the ball, relative to the light. more: other objects, with a comma before.
+static double gain_among(const char* material, const char* more, int samples)
 {
     char text[2048];
-    snprintf(text, sizeof text, furnace, samples, material);
+    snprintf(text, sizeof text, furnace, samples, material, more);
     ty_exr* exr = render_text(text);
     assert_true(pixel(exr, "A", 12, 12) > 0.0f); // sheets let the sky through
     mean_error centre = mean_over(exr, 6, 6, 17, 17);
     ty_exr_destroy(exr);
     return centre.mean / 0.5;
+}
+
+static double gain(const char* material, int samples)
+{
+    return gain_among(material, "", samples);
 }
 
 static void check_vanishes(const char* material, int samples)
@@ -51,6 +58,16 @@ static void white_things_vanish(void** state)
     check_vanishes("model: cdrf, color: 1, specular_weight: 0, mean_free_path: 7.5, evaluate: local, kernel: gaussian",
                    1024);
     check_vanishes("model: cdrf, color: 1, specular_weight: 1, specular_roughness: 0.2, mean_free_path: 7.5", 512);
+}
+
+// What a coat reflects of a floor is lit like all else: only what its ray met straight away has been counted before.
+static void coats_reflect_a_lit_floor(void** state)
+{
+    (void)state;
+    double value = gain_among("model: cdrf, color: 1, specular_weight: 1, specular_roughness: 0.2, mean_free_path: 7.5",
+                              ", { mesh: floor, material: white, translate: [0, -0.031, 0] }", 512);
+    print_message("over a white floor: %.5f\n", value);
+    assert_true(fabs(value - 1.0) < 0.005);
 }
 
 // The negative control: the Gaussian as published gains I(sigma) / pi, and the test above can tell.
@@ -93,6 +110,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(white_things_vanish),
+        cmocka_unit_test(coats_reflect_a_lit_floor),
         cmocka_unit_test(published_kernel_gains),
         cmocka_unit_test(rough_things_vanish),
     };

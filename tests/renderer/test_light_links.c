@@ -121,6 +121,10 @@ static void objects_cast_shadows_unless_told(void** state)
     s.lights = "{ type: rectangle, center: [0, 0.3, 0], target: [0, 0, 0], up: [0, 0, 1], size: [0.4, 0.2], radiance: "
                "5, shadows: false, camera_visible: false }";
     check_stage(&s, rectangle_irradiance(), 0.01);
+    s.lights = "{ type: environment, radiance: 2, shadows: false }";
+    check_stage(&s, 2 * PI, 0.01);
+    s.lights = "{ type: environment, radiance: 2, shadows: false }, { type: environment, radiance: 3 }";
+    check_stage(&s, 2 * PI + 3 * PI * (1 - 4 * corner_factor(0.2, 0.1, 0.2)), 0.01);
 }
 
 static void groups_are_the_lights_alone(void** state)
@@ -150,6 +154,43 @@ static void groups_are_the_lights_alone(void** state)
     // The plane stands before a part of the sky.
     double open = 0.2 * PI * (1 - 4 * corner_factor(0.2, 0.1, 0.3));
     assert_true(fabs(rest / open - 1) < 0.02 && whole > key + lamp);
+}
+
+// Limited light keeps its groups: between two planes, where the limit takes most of what they throw to each other.
+static void groups_are_limited_together(void** state)
+{
+    (void)state;
+    double mean[2];
+    for (int limited = 0; limited < 2; limited++)
+    {
+        char text[2048];
+        snprintf(text, sizeof text,
+                 "tsuya: 1\nfilm: { size: [8, 8], filter: box, filter_width: 1, half: false }\n"
+                 "render: { samples: 256, max_depth: 6, seed: 7, indirect_clamp: %s }\n"
+                 "camera: { position: [0, 0.02, 0.3], look_at: [0, 0, 0], vfov: 10 }\n"
+                 "assets: { plane: { shape: plane, size: [0.2, 0, 0.1] } }\n"
+                 "materials: { m: { model: surface, base_color: 0.9, specular_weight: 0 } }\n"
+                 "objects: [ { mesh: plane, material: m }, { mesh: plane, material: m, rotate: [180, 0, 0], "
+                 "translate: [0, 0.05, 0] } ]\n"
+                 "lights: [ { type: environment, radiance: 0.6, group: sky }, { type: sphere, center: [0.05, 0.02, 0], "
+                 "radius: 0.01, radiance: 30 } ]\n",
+                 limited ? "0.2" : "0");
+        ty_exr* exr = render_text(text);
+        double sky = 0.0, whole = 0.0;
+        for (int y = 0; y < 8; y++)
+            for (int x = 0; x < 8; x++)
+            {
+                double all = (double)pixel(exr, "R", x, y), of_sky = (double)pixel(exr, "light.sky.R", x, y);
+                assert_true(fabs(of_sky + (double)pixel(exr, "light.default.R", x, y) - all) < 1e-6 * all);
+                sky += of_sky / 64;
+                whole += all / 64;
+            }
+        ty_exr_destroy(exr);
+        print_message("%s: %.5f, of the sky %.5f\n", limited ? "limited" : "unlimited", whole, sky);
+        assert_true(sky > 0.1 * whole && sky < 0.9 * whole);
+        mean[limited] = whole;
+    }
+    assert_true(mean[1] < 0.95 * mean[0]);
 }
 
 // A polished floor under a large dim and a small bright light: each strategy is bad at one of them.
@@ -188,13 +229,10 @@ static void strategies_agree_and_together_are_best(void** state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(objects_name_their_lights),
-        cmocka_unit_test(glowing_objects_are_linked_too),
-        cmocka_unit_test(lights_are_visible_by_kind_of_ray),
-        cmocka_unit_test(lobes_divide_a_light_among_them),
-        cmocka_unit_test(objects_cast_shadows_unless_told),
-        cmocka_unit_test(groups_are_the_lights_alone),
-        cmocka_unit_test(strategies_agree_and_together_are_best),
+        cmocka_unit_test(objects_name_their_lights),         cmocka_unit_test(glowing_objects_are_linked_too),
+        cmocka_unit_test(lights_are_visible_by_kind_of_ray), cmocka_unit_test(lobes_divide_a_light_among_them),
+        cmocka_unit_test(objects_cast_shadows_unless_told),  cmocka_unit_test(groups_are_the_lights_alone),
+        cmocka_unit_test(groups_are_limited_together),       cmocka_unit_test(strategies_agree_and_together_are_best),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
