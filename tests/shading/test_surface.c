@@ -507,6 +507,39 @@ static void test_matte_is_the_layered_surface(void** state)
     ty_material_destroy(layered);
 }
 
+// Every other layer makes a surface more than Lambert; and a base colour that varies does
+// so on lean ones too.
+static void test_what_is_matte(void** state)
+{
+    (void)state;
+    ty_surface_def defs[8];
+    for (int i = 0; i < 8; i++)
+        defs[i] = white(0, 0.3f);
+    defs[0].base_color.attribute_index = 0;
+    defs[1].emission_luminance = ty_input_scalar(1);
+    defs[2].opacity = ty_input_scalar(0.5f);
+    defs[3].base_metalness = ty_input_scalar(0.5f);
+    defs[4].transmission_weight = ty_input_scalar(0.5f);
+    defs[5].coat_weight = ty_input_scalar(0.5f);
+    defs[6].specular_weight = ty_input_scalar(0.5f);
+    defs[7].thin_walled = true;
+    static const float tint[2] = {0.25f, 0.5f};
+    const float* of_object[] = {tint};
+    const float* const* objects[] = {of_object};
+    const ty_shading_context context = {.object_attributes = objects};
+    for (int i = 0; i < 8; i++)
+        for (uint32_t k = 0; k < 2; k++)
+        {
+            ty_material* m = surface(&defs[i]);
+            ty_surface_point p = {.ng = {0, 0, 1}, .ns = {0, 0, 1}, .instance = k};
+            ty_bsdf b;
+            ty_material_prepare(m, &context, &p, ty_vec3_make(0, 0, 1), &b);
+            assert_int_equal(b.kind, i < 3 ? TY_BSDF_MATTE : TY_BSDF_SURFACE);
+            assert_true(b.color.r == (i == 0 ? tint[k] : 1.0f));
+            ty_material_destroy(m);
+        }
+}
+
 static void test_black_scatters_nothing(void** state)
 {
     (void)state;
@@ -530,6 +563,7 @@ int main(void)
         cmocka_unit_test(test_rough_transmission_sampling),
         cmocka_unit_test(test_lambert_furnace_is_exact),
         cmocka_unit_test(test_matte_is_the_layered_surface),
+        cmocka_unit_test(test_what_is_matte),
         cmocka_unit_test(test_black_scatters_nothing),
         cmocka_unit_test(test_white_under_specular_keeps_energy),
         cmocka_unit_test(test_varying_roughness_uses_the_same_table),
