@@ -225,6 +225,20 @@ def test_compare(browser):
     test_quiet(browser)
 
 
+def test_failed(browser):
+    open_page(browser, "failing/index.html")
+    check(len(browser.find_all(".cell canvas")) == 2, "the cells beside a failed one are missing")
+    check("at most the radius" in browser.text(".cell .missing"), "a failed cell does not say why")
+    check("failed" in row_of(browser, 1), "the table does not mark a failed cell")
+    browser.click("#cell-1")
+    check(browser.script("return document.getElementById('b').value") == "2", "a failed cell becomes B")
+    open_page(browser, "wide/index.html")
+    browser.pointer("#canvas", [(0.501, 0.5)], hold=False)
+    x = int(browser.text("#readout").split(",")[0])
+    check(abs(x - 701) <= 3 and x % 2 == 0, f"the middle of 1400 pixels is not {x}")
+    test_quiet(browser)
+
+
 def test_damaged(browser):
     page = open("grid/index.html", encoding="utf-8").read()
     with open("damaged.html", "w", encoding="utf-8") as file:
@@ -256,8 +270,8 @@ def main():
         open_page(browser, "bare.html")
         test_table(browser, cells, False)
         test_damaged(browser)
-        if os.path.exists("compare.html"):
-            test_compare(browser)
+        test_failed(browser)
+        test_compare(browser)
     finally:
         browser.close()
     return 1 if failures else 0
