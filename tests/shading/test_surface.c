@@ -512,8 +512,8 @@ static void test_matte_is_the_layered_surface(void** state)
 static void test_what_is_matte(void** state)
 {
     (void)state;
-    ty_surface_def defs[8];
-    for (int i = 0; i < 8; i++)
+    ty_surface_def defs[10];
+    for (int i = 0; i < 10; i++)
         defs[i] = white(0, 0.3f);
     defs[0].base_color.attribute_index = 0;
     defs[1].emission_luminance = ty_input_scalar(1);
@@ -523,11 +523,13 @@ static void test_what_is_matte(void** state)
     defs[5].coat_weight = ty_input_scalar(0.5f);
     defs[6].specular_weight = ty_input_scalar(0.5f);
     defs[7].thin_walled = true;
+    defs[8].fuzz_weight = ty_input_scalar(0.5f);
+    defs[9].base_diffuse_roughness = ty_input_scalar(0.5f);
     static const float tint[2] = {0.25f, 0.5f};
     const float* of_object[] = {tint};
     const float* const* objects[] = {of_object};
     const ty_shading_context context = {.object_attributes = objects};
-    for (int i = 0; i < 8; i++)
+    for (int i = 0; i < 10; i++)
         for (uint32_t k = 0; k < 2; k++)
         {
             ty_material* m = surface(&defs[i]);
