@@ -24,8 +24,7 @@ float ty_moisture_wet_basis(float uptake)
     return ty_max((raw_wet_basis + uptake) / (1.0f + uptake), least_wet_basis);
 }
 
-// Inverse of the wet basis: water taken up per raw mass.
-static float uptake_of(float wet_basis)
+float ty_moisture_uptake_of(float wet_basis)
 {
     return (wet_basis - raw_wet_basis) / (1.0f - wet_basis);
 }
@@ -41,6 +40,6 @@ ty_moisture ty_moisture_make(const ty_moisture_def* def)
     // Below 60 degrees soaking alone gelatinises nothing.
     float cooked = ty_clamp(def->cooked, 0.0f, 1.0f);
     float uptake = ty_moisture_uptake(def->soak_minutes, def->soak_celsius);
-    uptake = ty_lerp(uptake, uptake_of(cooked_wet_basis), cooked);
+    uptake = ty_lerp(uptake, ty_moisture_uptake_of(cooked_wet_basis), cooked);
     return (ty_moisture){ty_moisture_wet_basis(uptake), cooked};
 }

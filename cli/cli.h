@@ -54,6 +54,9 @@ const char* ty_argument_text(const ty_arguments* arguments, const char* name, co
 TY_CHECKED ty_status ty_argument_int(const ty_arguments* arguments, const char* name, long low, long high, long* out);
 TY_CHECKED ty_status ty_argument_float(const ty_arguments* arguments, const char* name, double low, double high,
                                        double* out);
+// A list "0.1,0.2", with ranges "FROM:TO:COUNT", of 1..most numbers from low to high.
+TY_CHECKED ty_status ty_argument_numbers(const ty_arguments* arguments, const char* name, double low, double high,
+                                         int most, double* out, int* count);
 // "512MB", "1.5GB" (decimal), "2GiB", or bytes.
 TY_CHECKED ty_status ty_argument_bytes(const ty_arguments* arguments, const char* name, double low, double high,
                                        uint64_t* out);
@@ -119,3 +122,4 @@ extern const ty_command ty_command_render, ty_command_develop, ty_command_merge,
     ty_command_params, ty_command_pack, ty_command_fill, ty_command_roots, ty_command_doctor;
 extern const ty_command ty_command_compare, ty_command_regress;
 extern const ty_command ty_command_turntable, ty_command_sweep;
+extern const ty_command ty_command_moisture, ty_command_calibrate;

@@ -128,6 +128,19 @@ static void inline_recipes(ty_loader* loader)
     }
 }
 
+// `calibration: FILE` of a material becomes what the file says, so that the recipe of a picture tells it.
+static void inline_calibrations(ty_loader* loader)
+{
+    ty_node* materials = ty_section(loader, "materials", TY_NODE_MAP);
+    for (int i = 0; materials && i < materials->count && !loader->tree.stopped; ++i)
+    {
+        ty_node* material = materials->items[i];
+        int found = material->kind == TY_NODE_MAP ? ty_node_find(material, "calibration") : -1;
+        if (found >= 0 && ty_recipe_is_file(material->items[found]))
+            ty_recipe_inline(loader, &material->items[found]);
+    }
+}
+
 // Bounds hold for the whole tree too, so that its text can be read again.
 static bool is_deep(const ty_node* node, int depth)
 {
@@ -161,7 +174,10 @@ bool ty_loader_resolve(ty_loader* loader)
     if (!ty_loader_resolve_tree(loader))
         return false;
     if (!loader->is_recipe)
+    {
         inline_recipes(loader);
+        inline_calibrations(loader);
+    }
     ty_override_check_defines(loader);
     if (loader->tree.stopped)
         return false;

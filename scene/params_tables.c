@@ -3,6 +3,7 @@
 #include "scene_params.h"
 #include <tsuya/generate/asset.h>
 #include <tsuya/geometry/shape.h>
+#include <tsuya/scene/calibration.h>
 #include <tsuya/scene/regression.h>
 
 #define MOST 128
@@ -49,6 +50,7 @@ const ty_param_table* const* ty_scene_tables(int* count)
     const ty_generator* const* all = ty_generator_list(&generators);
     for (int i = 0; i < generators; ++i)
         add(&list, all[i]->params);
+    add(&list, ty_optical_states_params());
     add(&list, ty_regression_params());
     tables = list;
     *count = tables.count;

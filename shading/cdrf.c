@@ -7,19 +7,11 @@
 #include "microfacet.h"
 #include <tsuya/shading/cdrf.h>
 
-// A film of water darkens and saturates: colour^exponent. The colour of a material is that
-// of its cooked state, so that at the default moisture it is what the scene says. White stays white.
-static float film_color(float c, float exponent)
-{
-    c = ty_clamp(c, 0.0f, 1.0f);
-    return c < 1.0f && exponent != 1.0f ? ty_pow(c, exponent) : c;
-}
-
 static ty_moisture_optics optics_at(const ty_material* m, const ty_shading_context* context, const ty_surface_point* p)
 {
     if (m->optics_are_constant)
         return m->optics;
-    return ty_moisture_optics_make(ty_moisture_at(&m->cdrf.moisture, context, p));
+    return ty_moisture_law_at(&m->cdrf.calibration, ty_moisture_at(&m->cdrf.moisture, context, p));
 }
 
 static void prepare_coat(const ty_material* material, const ty_shading_context* context,
@@ -43,8 +35,8 @@ void ty_cdrf_prepare(const ty_material* material, const ty_shading_context* cont
     const ty_cdrf_def* d = &material->cdrf;
     ty_moisture_optics optics = optics_at(material, context, &b->point);
     ty_rgb color = ty_input_color(&d->color, context, &b->point);
-    b->color = ty_rgb_make(film_color(color.r, optics.color_exponent), film_color(color.g, optics.color_exponent),
-                           film_color(color.b, optics.color_exponent));
+    b->color = ty_rgb_make(ty_moisture_color(&optics, color.r), ty_moisture_color(&optics, color.g),
+                           ty_moisture_color(&optics, color.b));
     b->mean_free_path = ty_input_float(&d->mean_free_path, context, &b->point);
     if (b->mean_free_path < 0.0f)
     {

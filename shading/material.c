@@ -113,7 +113,7 @@ ty_status ty_material_create_cdrf(const ty_cdrf_def* def, ty_material** out, ty_
         m->cdrf.moisture.cooked = ty_input_scalar(def->cooked);
     m->optics_are_constant = ty_moisture_inputs_are_constant(&def->moisture);
     if (m->optics_are_constant)
-        m->optics = ty_moisture_optics_make(ty_moisture_at(&m->cdrf.moisture, NULL, NULL));
+        m->optics = ty_moisture_law_at(&def->calibration, ty_moisture_at(&m->cdrf.moisture, NULL, NULL));
     m->bent = has_map(&def->normal, &def->bump);
     if (def->evaluate == TY_CDRF_LOCAL && def->kernel == TY_CDRF_POISSON)
         m->poisson = ty_poisson_table_create();

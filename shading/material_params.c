@@ -54,6 +54,7 @@ ty_cdrf_def ty_cdrf_def_default(void)
         .normal = ty_input_scalar(1.0f),
         .normal_strength = 1.0f,
         .bump = ty_input_scalar(0.0f),
+        .calibration = ty_moisture_law_default(),
     };
 }
 
@@ -167,6 +168,12 @@ static const ty_param cdrf_rows[] = {
     ROW(specular_roughness, SCALAR, "", -1, 1, "roughness of the reflection; negative: from moisture"),
     ROW(specular_ior, NUMBER, "", 1, 3, "refractive index of the surface"),
     NORMAL_ROWS,
+    {.name = "calibration",
+     .type = TY_PARAM_GROUP,
+     .unit = "",
+     .group = &ty_moisture_law_table,
+     .offset = offsetof(ty_cdrf_def, calibration),
+     .help = "what moisture means in optics: a file that `tsuya calibrate` wrote, or its mapping"},
 };
 #undef DEF
 

@@ -4,7 +4,6 @@
 #include "albedo_table.h"
 #include "kernel_table.h"
 #include "loss_table.h"
-#include <tsuya/shading/cdrf.h>
 #include <tsuya/shading/material.h>
 
 typedef enum ty_material_model
@@ -39,7 +38,7 @@ struct ty_material
     ty_moisture_optics optics;
 };
 
-extern const ty_param_table ty_moisture_table;
+extern const ty_param_table ty_moisture_table, ty_moisture_law_table;
 
 // A negative constant stands for nothing.
 static inline bool ty_walk_is_given(const ty_input* input)

@@ -126,3 +126,40 @@ const ty_param_table* ty_moisture_params(void)
 {
     return &ty_moisture_table;
 }
+
+// --- the law, as calibration writes it ---
+
+static void law_default(void* def)
+{
+    *(ty_moisture_law*)def = ty_moisture_law_default();
+}
+
+#define LAW(field, unit_, low, high, text)                                                                             \
+    {                                                                                                                  \
+        .name = #field, .type = TY_PARAM_FLOAT, .unit = unit_, .minimum = low, .maximum = high,                        \
+        .offset = offsetof(ty_moisture_law, field), .help = text                                                       \
+    }
+
+static const ty_param law_rows[] = {
+    LAW(cooked_constant, "", -10, 10, "of cooked matter: ln(mean free path / mm) = constant + exponent ln(wet basis)"),
+    LAW(cooked_exponent, "", -10, 10, "likewise"),
+    LAW(raw_length, "mm", 0.0001, 1000, "mean free path of raw grains, wet basis .145"),
+    LAW(soaked_length, "mm", 0.0001, 1000, "the same soaked, wet basis .31; by the logarithm between"),
+    LAW(sigma_constant, "", -10, 10, "of gaussian_published: ln(sigma_0 / mm) = constant + exponent ln(wet basis)"),
+    LAW(sigma_exponent, "", -10, 10, "likewise"),
+    LAW(rms, "", 0, 10, "error of the fit, a fully lit matte point being 1; changes nothing"),
+};
+
+const ty_param_table ty_moisture_law_table = {
+    .name = "calibration",
+    .help = "From moisture to optics. What a file of `tsuya calibrate` does not say is as in the law of rice.",
+    .size = sizeof(ty_moisture_law),
+    .set_default = law_default,
+    .params = law_rows,
+    .count = TY_PARAM_COUNT(law_rows),
+};
+
+const ty_param_table* ty_moisture_law_params(void)
+{
+    return &ty_moisture_law_table;
+}

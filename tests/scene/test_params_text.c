@@ -2,6 +2,7 @@
 // Help, schema and reference come from the tables: every row is in each, and the schema is JSON.
 #include "scene/fixture.h"
 #include <ctype.h>
+#include <math.h>
 
 // A strict JSON reader that keeps nothing; NULL at the first fault.
 static const char* json_value(const char* c);
@@ -199,7 +200,7 @@ static void defaults_lie_in_their_ranges(void** state)
                                                           : 1.0;
             double value = row->type == TY_PARAM_INT ? *(int*)((char*)def + row->offset)
                                                      : (double)*(float*)((char*)def + row->offset) * scale;
-            if (!(value >= row->minimum * (1 + 1e-6) - 1e-12 && value <= row->maximum * (1 + 1e-6)))
+            if (!(value >= row->minimum - 1e-6 * fabs(row->minimum) - 1e-12 && value <= row->maximum * (1 + 1e-6)))
                 fail_msg("%s.%s: default %g", tables[i]->name, row->name, value);
             ty_free(def);
         }

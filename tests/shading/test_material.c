@@ -37,7 +37,7 @@ static void check_table(const ty_param_table* table)
         assert_true(p->name && p->help && p->unit && p->offset >= end);
         bool input =
             p->type == TY_PARAM_SCALAR_INPUT || p->type == TY_PARAM_COLOR_INPUT || p->type == TY_PARAM_VECTOR_INPUT;
-        if (p->type == TY_PARAM_BRIEF_GROUP)
+        if (p->type == TY_PARAM_BRIEF_GROUP || p->type == TY_PARAM_GROUP)
         {
             end = p->offset + p->group->size;
             continue;
@@ -64,8 +64,9 @@ static void test_parameter_tables(void** state)
     check_table(ty_surface_params());
     check_table(ty_cdrf_params());
     check_table(ty_soak_params());
+    check_table(ty_moisture_law_params());
     assert_int_equal(ty_surface_params()->count, 32);
-    assert_int_equal(ty_cdrf_params()->count, 12);
+    assert_int_equal(ty_cdrf_params()->count, 13);
 }
 
 static void test_kinds(void** state)

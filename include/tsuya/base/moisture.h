@@ -24,6 +24,7 @@ float ty_moisture_uptake(float minutes, float celsius);
 
 // w = (.145 + u) / (1 + u); clamped to at least .05.
 float ty_moisture_wet_basis(float uptake);
+float ty_moisture_uptake_of(float wet_basis); // its inverse; negative where dried below raw; wet_basis < 1
 
 // After soaking, cooking adds water up to the cooked wet basis .62 in proportion to cooked (< 0: not cooked, for
 // soaking alone gelatinises nothing). A wet basis given outright stays as it is. Out-of-range values are clamped.

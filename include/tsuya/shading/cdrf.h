@@ -29,6 +29,20 @@ typedef struct ty_moisture_optics
     float color_exponent; // the colour is that of the cooked state to this power
 } ty_moisture_optics;
 
-// l(w) = exp(.0736 + .9 ln w) mm for cooked; raw soaked .19 -> .10 mm over w .145 -> .31; mixed in the log by `cooked`.
-// The constants are ours (the paper leaves them out).
-ty_moisture_optics ty_moisture_optics_make(ty_moisture state);
+// What `tsuya calibrate` fits: lengths as power laws of the wet basis w, mixed in the log by `cooked`.
+typedef struct ty_moisture_law
+{
+    float cooked_constant, cooked_exponent; // ln(l / mm) = constant + exponent ln w
+    float raw_length, soaked_length;        // m, of uncooked grains at w = .145 and .31, by the log between
+    float sigma_constant, sigma_exponent;   // ln(sigma_0 / mm), for the published form
+    float rms;                              // of the fit, for whom it may concern; 0 = not known
+} ty_moisture_law;
+
+// l(w) = exp(.0736 + .9 ln w) mm for cooked; raw soaked .19 -> .10 mm over w .145 -> .31; sigma_0 = exp(.34 + .52 ln w)
+// mm. The constants are ours (the paper leaves them out).
+ty_moisture_law ty_moisture_law_default(void);
+ty_moisture_optics ty_moisture_law_at(const ty_moisture_law* law, ty_moisture state);
+ty_moisture_optics ty_moisture_optics_make(ty_moisture state); // by the default law
+
+// Colour of a channel at a moisture.
+float ty_moisture_color(const ty_moisture_optics* optics, float color);

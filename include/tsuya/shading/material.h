@@ -7,6 +7,7 @@
 #include <tsuya/base/status.h>
 #include <tsuya/geometry/trace.h>
 #include <tsuya/image/mip_texture.h>
+#include <tsuya/shading/cdrf.h>
 
 typedef struct ty_material ty_material;       // opaque, const after creation
 typedef struct ty_depth_field ty_depth_field; // opaque: per-vertex depth and curvature of a prototype, for `depth`
@@ -77,6 +78,7 @@ typedef struct ty_moisture_inputs
 ty_moisture_inputs ty_moisture_inputs_default(void); // cooked rice
 const ty_param_table* ty_moisture_params(void);      // "moisture"
 const ty_param_table* ty_soak_params(void);          // "moisture.soak"
+const ty_param_table* ty_moisture_law_params(void);  // "calibration": what `tsuya calibrate` writes
 
 typedef enum ty_cdrf_kernel
 {
@@ -105,7 +107,8 @@ typedef struct ty_cdrf_def
     float specular_ior;
     ty_input normal; // of the specular reflection: tangent space, +y along v; no texture = none
     float normal_strength;
-    ty_input bump; // m, likewise
+    ty_input bump;               // m, likewise
+    ty_moisture_law calibration; // what moisture means
 } ty_cdrf_def;
 
 typedef enum ty_walk_boundary
