@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // White bodies in a constant environment of radiance 1, through the whole program: whatever keeps energy shows 1.
+#include "picture.h"
 #include "report.h"
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <tsuya/renderer/render.h>
 #include <tsuya/shading/cdrf.h>
 
 typedef struct furnace_case
@@ -59,22 +57,11 @@ static const furnace_case cases[] = {
 static const char* const scene_text = "tsuya: 1\n"
                                       "film: { size: [%d, %d] }\n"
                                       "camera: { position: [0.01, 0.03, 0.08], look_at: [0, 0, 0], vfov: 16 }\n"
-                                      "render: { samples: %d, max_depth: 256, roulette_depth: 256, seed: 3 }\n"
+                                      "render: { samples: %d, max_depth: 256, roulette_depth: 256 }\n"
                                       "assets:\n  body: %s\n"
                                       "materials:\n  white: %s\n"
                                       "objects:\n  - { mesh: body, material: white }\n"
                                       "lights:\n  - { type: environment, radiance: 1 }\n";
-
-static const float* channel(const ty_exr* exr, const char* name)
-{
-    const ty_exr_channel* c = ty_exr_find_channel(exr, name);
-    if (!c)
-    {
-        fprintf(stderr, "bench_shading: no channel %s\n", name);
-        exit(1);
-    }
-    return c->pixels;
-}
 
 typedef struct mean_error
 {
@@ -84,7 +71,8 @@ typedef struct mean_error
 // Over the pixels that the body fills.
 static mean_error over_body(const ty_exr* exr)
 {
-    const float *g = channel(exr, "G"), *alpha = channel(exr, "A"), *variance = channel(exr, "variance.Y");
+    const float *g = picture_channel(exr, "G"), *alpha = picture_channel(exr, "A"),
+                *variance = picture_channel(exr, "variance.Y");
     double sum = 0.0, noise = 0.0;
     int count = 0;
     for (int i = 0; i < ty_exr_width(exr) * ty_exr_height(exr); i++)
@@ -97,47 +85,14 @@ static mean_error over_body(const ty_exr* exr)
     return (mean_error){sum / fmax(count, 1), sqrt(noise) / fmax(count, 1)};
 }
 
-static bool render(const char* text, ty_workers* workers, ty_exr** out)
-{
-    ty_error_list errors = {0};
-    ty_error error = {0};
-    ty_scene_options options = {.workers = workers};
-    ty_scene* scene;
-    if (ty_scene_load_memory("furnace", text, strlen(text), &options, &scene, &errors) != TY_OK)
-    {
-        char message[1600];
-        ty_error_format(&errors.items[0], message, sizeof message);
-        fprintf(stderr, "bench_shading: %s\n", message);
-        ty_error_list_term(&errors);
-        return false;
-    }
-    ty_film_setup setup = {.size = {scene->film.size[0], scene->film.size[1]},
-                           .crop = {0, 0, scene->film.size[0] - 1, scene->film.size[1] - 1},
-                           .sample_end = scene->render.samples,
-                           .aovs = TY_AOV_ALL};
-    ty_film* film = NULL;
-    ty_render_options how = {.sample_end = scene->render.samples};
-    ty_render_stats stats;
-    ty_film_write write = {.scene = scene, .sample_end = scene->render.samples};
-    bool good = ty_film_create(&setup, &film, &error) == TY_OK &&
-                ty_render(scene, &how, workers, film, &stats, &error) == TY_OK &&
-                ty_film_to_exr(film, &write, out, &error) == TY_OK;
-    ty_film_destroy(film);
-    ty_scene_destroy(scene);
-    return good;
-}
-
 static void run_case(const furnace_case* c, const bench_options* options, ty_workers* workers)
 {
     char text[2000];
-    ty_exr* exr;
-    int size = options->quick ? 20 : 48;
-    snprintf(text, sizeof text, scene_text, size, size, options->quick ? 32 : 256, c->shape, c->material);
-    if (!render(text, workers, &exr))
-    {
-        report_holds(c->name, false);
-        return;
-    }
+    double seconds;
+    int size = options->quick ? 20 : 48, samples = options->quick ? 32 : 256;
+    snprintf(text, sizeof text, scene_text, size, size, samples, c->shape, c->material);
+    picture_def def = {.path = "furnace", .text = text, .samples = samples, .seed = 3, .workers = workers};
+    ty_exr* exr = picture_render(&def, &seconds);
     mean_error m = over_body(exr);
     ty_exr_destroy(exr);
     report_near(c->name, m.mean, c->expected, (c->expected == 1.0 ? 0.003 : 0.005) + (options->quick ? m.error : 0.0));

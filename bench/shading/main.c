@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <tsuya/base/log.h>
 
 typedef void group_fn(const bench_options* options);
 
@@ -15,7 +16,8 @@ static const struct
     bool quick; // part of the quick form
 } groups[] = {
     {"furnace", bench_furnace, true},    {"sphere", bench_sphere, true}, {"ellipsoid", bench_ellipsoid, true},
-    {"shapes", bench_nine_shapes, true}, {"heap", bench_heap, false},
+    {"shapes", bench_nine_shapes, true}, {"heap", bench_heap, false},    {"pictures", bench_pictures, false},
+    {"speed", bench_speed, false},
 };
 
 #define GROUPS (int)(sizeof groups / sizeof *groups)
@@ -31,6 +33,7 @@ static int usage(void)
 
 int main(int argc, char** argv)
 {
+    ty_log_set_level(TY_LOG_WARNING);
     bench_options options = {.threads = 1};
     bool chosen[GROUPS] = {false}, any = false;
     for (int i = 1; i < argc; i++)

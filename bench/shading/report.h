@@ -28,3 +28,5 @@ void bench_ellipsoid(const bench_options* options);
 void bench_nine_shapes(const bench_options* options);
 void bench_furnace(const bench_options* options);
 void bench_heap(const bench_options* options);
+void bench_pictures(const bench_options* options);
+void bench_speed(const bench_options* options);
