@@ -100,9 +100,9 @@ static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_
 static bool advance(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf* bsdf, ty_path* p, ty_film_sample* out,
                     ty_counters* counters)
 {
-    if (p->bounce == 0 && ty_bsdf_coat_chance(bsdf) > 0.0f)
+    if (p->bounce == 0 && ty_bsdf_coat_chance(bsdf) > 0.0f && !(bsdf->transmission_weight > 0.0f))
         return scatter_both(in, sampler, bsdf, p, out, counters);
-    if (bsdf->kind == TY_BSDF_CDRF)
+    if (ty_bsdf_is_open(bsdf))
     {
         float pair[4];
         ty_rgb weight = {1.0f, 1.0f, 1.0f};

@@ -12,7 +12,8 @@ bool ty_bsdf_is_delta(const ty_bsdf* bsdf)
         return ty_matte_is_black(bsdf);
     case TY_BSDF_CDRF_COAT:
         return bsdf->coat_alpha == 0.0f;
-    case TY_BSDF_CDRF: // nothing can be evaluated before it is resolved
+    case TY_BSDF_CDRF:
+    case TY_BSDF_SUBSURFACE: // nothing can be evaluated before it is resolved
         return true;
     case TY_BSDF_CDRF_LOCAL:
     case TY_BSDF_CDRF_EXIT:
@@ -37,6 +38,7 @@ static ty_rgb eval_local(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf
     case TY_BSDF_CDRF_COAT:
         return ty_coat_eval(bsdf, wo, wi, pdf);
     case TY_BSDF_CDRF:
+    case TY_BSDF_SUBSURFACE:
         break;
     }
     return ty_rgb_grey(0.0f);
@@ -165,6 +167,7 @@ static __attribute__((noinline)) bool sample_any(const ty_bsdf* bsdf, float u_lo
         kept = ty_coat_sample(bsdf, wo, u, out);
         break;
     case TY_BSDF_CDRF:
+    case TY_BSDF_SUBSURFACE:
         break;
     }
     if (kept)
@@ -185,7 +188,8 @@ ty_rgb ty_bsdf_albedo(const ty_bsdf* bsdf)
 {
     if (bsdf->kind == TY_BSDF_MATTE)
         return bsdf->color;
-    return bsdf->kind == TY_BSDF_SURFACE ? ty_surface_albedo(bsdf) : ty_cdrf_albedo(bsdf);
+    bool surface = bsdf->kind == TY_BSDF_SURFACE || bsdf->kind == TY_BSDF_SUBSURFACE;
+    return surface ? ty_surface_albedo(bsdf) : ty_cdrf_albedo(bsdf);
 }
 
 // Light of `local` that comes from below the horizon has passed through the object itself.

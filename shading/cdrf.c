@@ -85,6 +85,8 @@ static float kernel_gain(const ty_bsdf* b, const ty_shading_context* context)
 
 float ty_bsdf_coat_chance(const ty_bsdf* b)
 {
+    if (b->kind == TY_BSDF_SUBSURFACE)
+        return b->surface_chance;
     if (b->kind != TY_BSDF_CDRF || b->coat_weight <= 0.0f)
         return 0.0f;
     // The coat carries the highlights, which are bright where they are: never sampled less than one time in ten.
@@ -93,13 +95,15 @@ float ty_bsdf_coat_chance(const ty_bsdf* b)
 
 void ty_bsdf_take_coat(ty_bsdf* b)
 {
-    TY_ASSERT(b->kind == TY_BSDF_CDRF);
-    b->kind = TY_BSDF_CDRF_COAT;
+    TY_ASSERT(ty_bsdf_is_open(b));
+    b->kind = b->kind == TY_BSDF_SUBSURFACE ? TY_BSDF_SURFACE : TY_BSDF_CDRF_COAT;
 }
 
 bool ty_bsdf_take_interior(ty_bsdf* b, const ty_shading_context* context, const float u[3], ty_rng* extra,
                            ty_rgb* weight)
 {
+    if (b->kind == TY_BSDF_SUBSURFACE)
+        return ty_surface_take_interior(b, context, u, extra, weight);
     if (b->material->cdrf.evaluate == TY_CDRF_PROBE && context && context->world)
         b->curvature = ty_mean_curvature(context->world, &b->point);
     float coat = ty_coat_albedo(b, ty_dot(b->wo, b->frame.n));
@@ -117,7 +121,7 @@ bool ty_bsdf_take_interior(ty_bsdf* b, const ty_shading_context* context, const 
 bool ty_bsdf_resolve(ty_bsdf* b, const ty_shading_context* context, const float u[4], ty_rng* extra, ty_rgb* weight)
 {
     *weight = ty_rgb_grey(1.0f);
-    if (b->kind != TY_BSDF_CDRF)
+    if (!ty_bsdf_is_open(b))
         return true;
     float chance = ty_bsdf_coat_chance(b);
     if (u[0] < chance)
@@ -165,6 +169,8 @@ bool ty_coat_sample(const ty_bsdf* b, ty_vec3 wo, ty_vec2 u, ty_bsdf_sample* out
 ty_rgb ty_exit_eval(const ty_bsdf* b, ty_vec3 wi, float* pdf)
 {
     *pdf = ty_max(wi.z, 0.0f) * TY_INV_PI;
+    if (b->material->model == TY_MODEL_SURFACE)
+        return ty_rgb_scale(ty_surface_eval_exit(b, ty_max(wi.z, 0.0f)), *pdf);
     return ty_rgb_grey(*pdf * (1.0f - ty_coat_albedo(b, wi.z)));
 }
 

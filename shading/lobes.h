@@ -9,6 +9,9 @@ ty_rgb ty_surface_eval(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf);
 ty_rgb ty_surface_eval_diffuse(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf); // its share of eval
 bool ty_surface_sample(const ty_bsdf* bsdf, ty_vec3 wo, float u_lobe, ty_vec2 u, ty_bsdf_sample* out);
 ty_rgb ty_surface_albedo(const ty_bsdf* bsdf);
+bool ty_surface_take_interior(ty_bsdf* bsdf, const ty_shading_context* context, const float u[3], ty_rng* extra,
+                              ty_rgb* weight);
+ty_rgb ty_surface_eval_exit(const ty_bsdf* bsdf, float mu); // what its layers leave of light from its body
 
 // One dielectric reflection of the coat, as CDRF_COAT, and as a part of others. Its weight is coat_weight.
 ty_rgb ty_coat_eval(const ty_bsdf* bsdf, ty_vec3 wo, ty_vec3 wi, float* pdf);

@@ -41,12 +41,13 @@ static ty_status check_surface(const ty_surface_def* def, ty_error* error)
         status =
             check_range("specular_roughness_anisotropy", def->specular_roughness_anisotropy.value.r, 0.0f, 1.0f, error);
     if (status == TY_OK)
-        status = check_range("subsurface_anisotropy", def->subsurface_anisotropy, -1.0f, 1.0f, error);
-    if (status == TY_OK)
         status = check_maps(def->normal_strength, &def->bump, error);
-    if (status == TY_OK && !def->thin_walled && !ty_input_is_zero(&def->subsurface_weight))
-        return ty_error_set(error, TY_BAD_INPUT,
-                            "subsurface_weight is for `thin_walled: true`; bodies that light enters are `model: cdrf`");
+    float most = def->thin_walled ? 1.0f : 0.99f;
+    if (status == TY_OK)
+        status = check_range("subsurface_anisotropy", def->subsurface_anisotropy, -most, most, error);
+    if (status == TY_OK && !(def->subsurface_radius.value.r > 0.0f))
+        return ty_error_set(error, TY_BAD_INPUT, "subsurface_radius is %g mm: it must be above 0",
+                            1e3 * (double)def->subsurface_radius.value.r);
     if (status == TY_OK && def->thin_walled && def->priority != 0)
         return ty_error_set(error, TY_BAD_INPUT, "priority: a thin_walled surface encloses nothing");
     return status;
@@ -74,7 +75,9 @@ ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** ou
     m->matte = ty_input_is_zero(&def->specular_weight) && ty_input_is_zero(&def->base_metalness) &&
                ty_input_is_zero(&def->transmission_weight) && ty_input_is_zero(&def->coat_weight) &&
                ty_input_is_zero(&def->fuzz_weight) && ty_input_is_zero(&def->base_diffuse_roughness) &&
-               !def->thin_walled;
+               ty_input_is_zero(&def->subsurface_weight) && !def->thin_walled;
+    m->body = !def->thin_walled && !ty_input_is_zero(&def->subsurface_weight);
+    m->cdrf = ty_cdrf_def_default(); // how light goes through the body
     m->anisotropic = !m->matte && !ty_input_is_zero(&def->specular_roughness_anisotropy);
     m->base_is_constant = ty_input_is_constant(&def->base_color) && ty_input_is_constant(&def->base_weight);
     m->base_color = ty_rgb_scale(ty_clamp_color(def->base_color.value), ty_clamp(def->base_weight.value.r, 0.0f, 1.0f));
@@ -171,11 +174,14 @@ void ty_material_destroy(ty_material* material)
 
 bool ty_material_is_subsurface(const ty_material* material)
 {
-    return material->model == TY_MODEL_CDRF || material->model == TY_MODEL_WALK;
+    // Of what is clear besides, the far side is seen from within.
+    return material->model != TY_MODEL_SURFACE || (material->body && !(material->traits & TY_TRAIT_MEDIUM));
 }
 
 bool ty_material_needs_depth(const ty_material* material)
 {
+    if (material->model == TY_MODEL_SURFACE)
+        return material->body && material->surface.subsurface_evaluate == TY_SUBSURFACE_DEPTH;
     return material->model == TY_MODEL_CDRF && material->cdrf.evaluate == TY_CDRF_DEPTH;
 }
 

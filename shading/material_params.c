@@ -32,6 +32,8 @@ ty_surface_def ty_surface_def_default(void)
         .opacity = ty_input_scalar(1.0f),
         .subsurface_weight = ty_input_scalar(0.0f),
         .subsurface_color = ty_input_scalar(0.8f),
+        .subsurface_radius = ty_input_scalar(1e-3f),
+        .subsurface_radius_scale = ty_input_make(ty_rgb_make(1.0f, 0.5f, 0.25f)),
         .normal = ty_input_scalar(1.0f),
         .normal_strength = 1.0f,
         .bump = ty_input_scalar(0.0f),
@@ -101,6 +103,8 @@ static void cdrf_default(void* def)
         ROW(normal_strength, NUMBER, "", 0, 100, "factor of the map's x and y"),                                       \
         ROW(bump, SCALAR, "m", -1000, 1000, "height along the normal, from a texture: scale is metres per unit")
 
+static const char* const subsurface_names[] = {"depth", "walk", NULL};
+
 #define DEF ty_surface_def
 static const ty_param surface_rows[] = {
     ROW(base_weight, SCALAR, "", 0, 1, "factor of base_color"),
@@ -129,9 +133,19 @@ static const ty_param surface_rows[] = {
     ROW(emission_color, COLOR, "", 0, 1000, "colour of the emission"),
     ROW(opacity, SCALAR, "", 0, 1, "0 = light passes as if nothing were there; shadows follow"),
     ROW(thin_walled, SWITCH, "", 0, 0, "a sheet without inside: a pane, a soap film, a leaf"),
-    ROW(subsurface_weight, SCALAR, "", 0, 1, "thin_walled alone: share of the diffuse base that light shines through"),
-    ROW(subsurface_color, COLOR, "", 0, 1, "albedo of that share, both sides together"),
-    ROW(subsurface_anisotropy, NUMBER, "", -1, 1, "where its light goes: -1 all back, 0 evenly, 1 all through"),
+    ROW(subsurface_weight, SCALAR, "", 0, 1,
+        "share of the diffuse base that light enters, of thin sheets shines through"),
+    ROW(subsurface_color, COLOR, "", 0, 1, "albedo of that share, of thin sheets both sides together"),
+    ROW(subsurface_radius, SCALAR, "mm", 1e-6, 1e6, "mean free path within a body"),
+    ROW(subsurface_radius_scale, COLOR, "", 1e-6, 1e6, "its factor by channel"),
+    ROW(subsurface_anisotropy, NUMBER, "", -1, 1,
+        "mean cosine of the scattering, up to .99 either way; of thin sheets -1 all back, 0 evenly, 1 all through"),
+    {.name = "subsurface_evaluate",
+     .type = TY_PARAM_ENUM,
+     .unit = "",
+     .choices = subsurface_names,
+     .offset = offsetof(ty_surface_def, subsurface_evaluate),
+     .help = "depth: a short ray inside, as cdrf; walk: a random walk"},
     ROW(priority, TY_PARAM_INT, "", -1000, 1000,
         "where clear bodies overlap the highest is there; of equals the one entered last"),
     NORMAL_ROWS,

@@ -27,6 +27,7 @@ struct ty_material
     bool anisotropic; // the frame follows the texture's u
     bool bent;        // a normal or bump map
     bool matte;       // nothing but a diffuse base
+    bool body;        // of `surface`: light enters a share of it
     bool emissive;
     bool base_is_constant; // of `surface`: base_color is, and then it is this:
     ty_rgb base_color;
@@ -67,6 +68,9 @@ void ty_surface_make_tables(ty_material* material);
 
 ty_rgb ty_surface_base_color(const ty_surface_def* def, const ty_shading_context* context,
                              const ty_surface_point* point);
+
+// Matter by its colour and mean free path.
+ty_scattering ty_walk_matter(ty_rgb color, float radius, ty_rgb scale, float anisotropy);
 
 // out holds point, frame, wo, entering and bent already; all else is zero.
 void ty_surface_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);

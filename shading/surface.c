@@ -63,6 +63,12 @@ static void lobe_albedos(const ty_bsdf* b, float mu, ty_rgb albedo[TY_LOBE_COUNT
     albedo[TY_LOBE_DIFFUSE_BELOW] = ty_rgb_mul(b->diffuse_below, diffuse);
 }
 
+static ty_rgb body_albedo(const ty_bsdf* b, float mu)
+{
+    float share = ty_surface_body(b) * ty_layers_diffuse(b, mu);
+    return ty_rgb_scale(ty_rgb_mul(b->body_color, ty_layers_tint(b, mu, mu)), share);
+}
+
 static void choose_probabilities(ty_bsdf* b, float mu)
 {
     ty_rgb albedo[TY_LOBE_COUNT];
@@ -75,6 +81,30 @@ static void choose_probabilities(ty_bsdf* b, float mu)
     }
     for (int i = 0; i < TY_LOBE_COUNT && sum > 0.0f; i++)
         b->lobe_probability[i] /= sum;
+    if (b->kind != TY_BSDF_SUBSURFACE)
+        return;
+    ty_rgb within = body_albedo(b, mu);
+    float rest = sum / ty_max(sum + (within.r + within.g + within.b) * (1.0f / 3.0f), 1e-6f);
+    // Highlights are bright where they are: never sampled less than one time in ten.
+    b->surface_chance = sum > 0.0f ? ty_clamp(rest, 0.1f, 0.9f) : 0.0f;
+}
+
+// A body's share: where its light goes within.
+static void prepare_body(const ty_surface_def* s, const ty_shading_context* context, ty_bsdf* b)
+{
+    const ty_surface_point* p = &b->point;
+    b->body = unit_input(&s->subsurface_weight, context, p);
+    if (!(ty_surface_body(b) > 0.0f))
+        return;
+    ty_rgb color = ty_clamp_color(ty_input_color(&s->subsurface_color, context, p));
+    ty_rgb scale = ty_input_color(&s->subsurface_radius_scale, context, p);
+    float radius = ty_input_float(&s->subsurface_radius, context, p), g = s->subsurface_anisotropy;
+    b->kind = TY_BSDF_SUBSURFACE;
+    b->body_color = color;
+    if (s->subsurface_evaluate == TY_SUBSURFACE_WALK)
+        b->matter = ty_walk_matter(color, radius, scale, g);
+    else
+        b->mean_free_paths = ty_rgb_scale(scale, radius / (1.0f - g));
 }
 
 static void prepare_transmission(const ty_surface_def* s, const ty_shading_context* context, ty_bsdf* b)
@@ -245,6 +275,7 @@ static void prepare_darkening(const ty_surface_def* s, const ty_shading_context*
         return;
     float diffuse = 1.0f - (1.0f - boundary_average(n)) / (n * n), mirror = ty_sqr((n - 1.0f) / (n + 1.0f));
     b->diffuse = darkened(b->diffuse, diffuse, weight);
+    b->body_color = darkened(b->body_color, diffuse, weight);
     b->diffuse_below = darkened(b->diffuse_below, diffuse, weight);
     ty_rgb metal = darkened(b->color, ty_lerp(mirror, diffuse, roughness), weight);
     const float least = 1e-6f;
@@ -287,7 +318,7 @@ static void prepare_boundary(const ty_material* material, const ty_shading_conte
 // Szirmay-Kalos 2001).
 static void couple_diffuse(float mu, ty_bsdf* b)
 {
-    if (b->inside || !(ty_surface_diffuse(b) > 0.0f))
+    if (b->inside || !(ty_surface_diffuse(b) + ty_surface_body(b) > 0.0f))
     {
         b->diffuse_gain = 1.0f;
         return;
@@ -322,6 +353,8 @@ void ty_surface_prepare(const ty_material* material, const ty_shading_context* c
     prepare_transmission(s, context, b);
     prepare_layers(material, context, b);
     prepare_diffuse(s, context, b);
+    if (material->body && b->entering)
+        prepare_body(s, context, b);
     prepare_boundary(material, context, roughness, b);
     if (b->coat_weight > 0.0f)
         prepare_darkening(s, context, roughness, b);
@@ -336,5 +369,58 @@ ty_rgb ty_surface_albedo(const ty_bsdf* b)
     lobe_albedos(b, mu, albedo);
     for (int i = 0; i < TY_LOBE_COUNT; i++)
         sum = ty_rgb_add(sum, albedo[i]);
-    return sum;
+    return b->kind == TY_BSDF_SUBSURFACE ? ty_rgb_add(sum, body_albedo(b, mu)) : sum;
+}
+
+// One channel is followed for all, where they differ: which, by chance.
+static ty_rgb follow_channel(ty_bsdf* b, ty_rng* extra)
+{
+    ty_rgb l = b->mean_free_paths;
+    b->mean_free_path = l.g;
+    if (l.r == l.g && l.g == l.b)
+        return ty_rgb_grey(1.0f);
+    float u = 3.0f * ty_rng_float(extra);
+    b->mean_free_path = u < 1.0f ? l.r : u < 2.0f ? l.g : l.b;
+    return (ty_rgb){u < 1.0f ? 3.0f : 0.0f, u >= 1.0f && u < 2.0f ? 3.0f : 0.0f, u >= 2.0f ? 3.0f : 0.0f};
+}
+
+bool ty_surface_take_interior(ty_bsdf* b, const ty_shading_context* context, const float u[3], ty_rng* extra,
+                              ty_rgb* weight)
+{
+    const ty_surface_def* s = &b->material->surface;
+    float mu = ty_dot(b->wo, b->frame.n);
+    bool walks = s->subsurface_evaluate == TY_SUBSURFACE_WALK, traced = context && context->world, left = false;
+    *weight = ty_rgb_scale(ty_layers_tint_one(b, mu), ty_surface_body(b) * b->diffuse_gain);
+    ty_surface_point exit;
+    if (walks && traced)
+    {
+        // Darkened where a coat sends light back; the colour itself comes of the walk.
+        ty_rgb color = ty_walk_reflectance(&b->matter);
+        const float least = 1e-6f;
+        *weight = ty_rgb_mul(*weight, ty_rgb_make(b->body_color.r / ty_max(color.r, least),
+                                                  b->body_color.g / ty_max(color.g, least),
+                                                  b->body_color.b / ty_max(color.b, least)));
+        left = ty_walk_exit(context, b, u, extra, weight, &exit);
+    }
+    else
+    {
+        *weight = ty_rgb_mul(*weight, b->body_color);
+        if (traced)
+        {
+            *weight = ty_rgb_mul(*weight, follow_channel(b, extra));
+            left = ty_cdrf_depth_exit(context, &b->point, b->mean_free_path, u, extra, &exit);
+        }
+    }
+    if (left)
+        b->point = exit;
+    b->kind = TY_BSDF_CDRF_EXIT;
+    b->color = b->body_color;
+    b->bent = false; // the map is the surface's
+    b->frame = ty_frame_from_normal(b->point.ns);
+    return !ty_rgb_is_black(*weight);
+}
+
+ty_rgb ty_surface_eval_exit(const ty_bsdf* b, float mu)
+{
+    return ty_rgb_scale(ty_layers_tint_one(b, mu), ty_layers_diffuse(b, mu));
 }

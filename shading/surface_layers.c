@@ -80,6 +80,11 @@ ty_rgb ty_layers_tint(const ty_bsdf* b, float mu_o, float mu_i)
     return tint_over(b, 0.5f * (inverse_cosine_within(b, mu_o) + inverse_cosine_within(b, mu_i)));
 }
 
+ty_rgb ty_layers_tint_one(const ty_bsdf* b, float mu)
+{
+    return b->tinted ? tint_over(b, 0.5f * inverse_cosine_within(b, mu)) : ty_rgb_grey(1.0f);
+}
+
 ty_rgb ty_layers_over_base(const ty_bsdf* b, float mu_o, float mu_i)
 {
     if (!b->layered)
@@ -93,8 +98,7 @@ ty_rgb ty_layers_across(const ty_bsdf* b, float mu_o, float mu_i)
     float mu = b->inside ? mu_i : mu_o;
     if (!(b->coat_weight > 0.0f || b->fuzz_weight > 0.0f))
         return ty_rgb_grey(1.0f);
-    ty_rgb left = ty_rgb_grey(ty_layers_left(b, mu));
-    return b->tinted ? ty_rgb_mul(tint_over(b, 0.5f * inverse_cosine_within(b, mu)), left) : left;
+    return ty_rgb_scale(ty_layers_tint_one(b, mu), ty_layers_left(b, mu));
 }
 
 float ty_layers_mean(const ty_bsdf* b, float (*what)(const ty_bsdf*, float))

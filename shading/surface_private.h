@@ -22,9 +22,14 @@ static inline float ty_surface_clear(const ty_bsdf* b)
     return (1.0f - b->metalness) * b->transmission_weight;
 }
 
+static inline float ty_surface_body(const ty_bsdf* b)
+{
+    return (1.0f - b->metalness) * (1.0f - b->transmission_weight) * b->body;
+}
+
 static inline float ty_surface_diffuse(const ty_bsdf* b)
 {
-    return (1.0f - b->metalness) * (1.0f - b->transmission_weight);
+    return (1.0f - b->metalness) * (1.0f - b->transmission_weight) * (1.0f - b->body);
 }
 
 // Share the dielectric boundary reflects at a facet.
@@ -57,6 +62,8 @@ float ty_layers_over_coat(const ty_bsdf* bsdf, float mu_o, float mu_i);
 ty_rgb ty_layers_over_base(const ty_bsdf* bsdf, float mu_o, float mu_i);
 // The colour of the coat on both ways.
 ty_rgb ty_layers_tint(const ty_bsdf* bsdf, float mu_o, float mu_i);
+// One of both ways alone; the product of two is that of both where the coat is whole.
+ty_rgb ty_layers_tint_one(const ty_bsdf* bsdf, float mu);
 // What light that is transmitted keeps: the same both ways, by the direction outside.
 ty_rgb ty_layers_across(const ty_bsdf* bsdf, float mu_o, float mu_i);
 // 2 * integral of what(mu) mu.

@@ -42,17 +42,21 @@ static ty_scattering from_coefficients(ty_rgb scattering, ty_rgb absorption, flo
     return m;
 }
 
-static ty_scattering from_color(const ty_walk_def* d, const ty_shading_context* context, const ty_surface_point* p)
+ty_scattering ty_walk_matter(ty_rgb color, float radius, ty_rgb scale, float g)
 {
     const float shortest = 1e-9f;
-    float radius = ty_input_float(&d->subsurface_radius, context, p), g = d->anisotropy;
-    ty_rgb scale = ty_input_color(&d->subsurface_radius_scale, context, p);
-    ty_rgb color = ty_clamp_color(ty_input_color(&d->subsurface_color, context, p));
     return (ty_scattering){
         .extinction = {1.0f / ty_max(radius * scale.r, shortest), 1.0f / ty_max(radius * scale.g, shortest),
                        1.0f / ty_max(radius * scale.b, shortest)},
         .albedo = {ty_walk_albedo(color.r, g), ty_walk_albedo(color.g, g), ty_walk_albedo(color.b, g)},
         .anisotropy = g};
+}
+
+static ty_scattering from_color(const ty_walk_def* d, const ty_shading_context* context, const ty_surface_point* p)
+{
+    return ty_walk_matter(ty_clamp_color(ty_input_color(&d->subsurface_color, context, p)),
+                          ty_input_float(&d->subsurface_radius, context, p),
+                          ty_input_color(&d->subsurface_radius_scale, context, p), d->anisotropy);
 }
 
 void ty_walk_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)

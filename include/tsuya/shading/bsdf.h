@@ -13,6 +13,7 @@ struct ty_shading_context;
 typedef enum ty_bsdf_kind
 {
     TY_BSDF_SURFACE,    // layered: fuzz over coat over (metal | dielectric specular over diffuse | transmission)
+    TY_BSDF_SUBSURFACE, // a surface and a share of its base that light enters, not yet resolved
     TY_BSDF_MATTE,      // a surface that is nothing but Lambert
     TY_BSDF_CDRF,       // depth or probe, not yet resolved: call ty_bsdf_resolve
     TY_BSDF_CDRF_LOCAL, // kernel over the whole sphere at the point, plus coat
@@ -94,6 +95,12 @@ typedef struct ty_bsdf
     // The larger of a layer's albedos towards wo and wi, on average over the reflection beneath it.
     ty_albedo_row coat_under_fuzz, base_under_coat, base_under_fuzz;
 
+    // subsurface, and surfaces that come of it
+    float body;             // share of what is neither metal nor clear; 0 = no body
+    float surface_chance;   // of going on with the rest of the surface
+    ty_rgb body_color;      // with the coat's darkening; grey of a walk, whose matter has the colour
+    ty_rgb mean_free_paths; // m, of the channels, transport
+
     // cdrf
     float mean_free_path; // m, world
     float sigma_slope;    // m; > 0: sigma = sigma_slope * curvature instead of the white-material law
@@ -124,14 +131,19 @@ typedef struct ty_bsdf_parts
     float pdf[3];
 } ty_bsdf_parts;
 
-// For cdrf `depth` and `probe`: decides between coat and interior, traces the interior, and turns bsdf into the lobe at
-// the point where light leaves. *weight multiplies the path. Others: nothing happens, weight 1. False = absorbed.
-// u: 4 numbers in [0,1); extra: further numbers for the rare longer walk.
+// For cdrf `depth` and `probe`, `walk` and surfaces with subsurface: decides between coat (or all the rest of the
+// surface) and interior, traces the interior, and turns bsdf into the lobe at the point where light leaves. *weight
+// multiplies the path. Others: nothing happens, weight 1. False = absorbed. u: 4 numbers in [0,1); extra: further
+// numbers for the rare longer walk.
 bool ty_bsdf_resolve(ty_bsdf* bsdf, const struct ty_shading_context* context, const float u[4], ty_rng* extra,
                      ty_rgb* weight);
 
 // The same two ways apart, for a caller that follows both: the coat where the point is, or the lobe where light leaves
-// (u: 3 numbers; its weight takes no part of the choice). Both only for a bsdf of kind TY_BSDF_CDRF.
+// (u: 3 numbers; its weight takes no part of the choice). Both only where ty_bsdf_is_open.
+static inline bool ty_bsdf_is_open(const ty_bsdf* bsdf)
+{
+    return bsdf->kind == TY_BSDF_CDRF || bsdf->kind == TY_BSDF_SUBSURFACE;
+}
 float ty_bsdf_coat_chance(const ty_bsdf* bsdf); // a good probability for going on with the coat; 0 = there is none
 void ty_bsdf_take_coat(ty_bsdf* bsdf);
 bool ty_bsdf_take_interior(ty_bsdf* bsdf, const struct ty_shading_context* context, const float u[3], ty_rng* extra,

@@ -14,6 +14,12 @@ typedef struct ty_depth_field ty_depth_field; // opaque: per-vertex depth and cu
 
 // --- definitions: what a scene file says ---
 
+typedef enum ty_subsurface_evaluate
+{
+    TY_SUBSURFACE_DEPTH, // as `cdrf` does by default
+    TY_SUBSURFACE_WALK,  // as `walk`
+} ty_subsurface_evaluate;
+
 // Names follow OpenPBR Surface.
 typedef struct ty_surface_def
 {
@@ -40,13 +46,16 @@ typedef struct ty_surface_def
     ty_input fuzz_roughness;     // 0..1: how far the fibres stray
     ty_input emission_luminance; // radiance
     ty_input emission_color;
-    ty_input opacity;            // 0..1, geometry_opacity: light passes the rest unbent
-    bool thin_walled;            // a sheet: transmitted light is not refracted, nothing is enclosed
-    ty_input subsurface_weight;  // of thin sheets: share of the diffuse base that light shines through
-    ty_input subsurface_color;   // its albedo, reflection and transmission together
-    float subsurface_anisotropy; // -1 = all reflected .. 1 = all transmitted
-    int priority;                // of the body where bodies overlap: the highest is there
-    ty_input normal;             // tangent space, +y along v; no texture = none
+    ty_input opacity;                 // 0..1, geometry_opacity: light passes the rest unbent
+    bool thin_walled;                 // a sheet: transmitted light is not refracted, nothing is enclosed
+    ty_input subsurface_weight;       // share of the diffuse base that light enters, or of thin sheets shines through
+    ty_input subsurface_color;        // its albedo; of sheets reflection and transmission together
+    ty_input subsurface_radius;       // m, mean free path in bodies
+    ty_input subsurface_radius_scale; // of the channels
+    float subsurface_anisotropy;      // mean cosine of scattering; of sheets -1 = all reflected .. 1 = all transmitted
+    int subsurface_evaluate;          // ty_subsurface_evaluate
+    int priority;                     // of the body where bodies overlap: the highest is there
+    ty_input normal;                  // tangent space, +y along v; no texture = none
     float normal_strength;
     ty_input bump; // m, height along the normal; no texture = none
 } ty_surface_def;
