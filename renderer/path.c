@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Path tracing: light sampling at each surface, weighted against the surface's own sampling; roulette from a depth on.
 #include "path.h"
+#include <tsuya/shading/walk.h>
 
 // The square root keeps more of the dim paths than the throughput itself: less noise for its rays. Scales beta and
 // makes *u uniform again. False = the path ends.
@@ -26,6 +27,7 @@ static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sa
         return false;
     p->indirect = p->soft;
     p->soft = p->soft || !sample->delta;
+    p->entered = 0.0f;
     if (p->at_boundary && sample->transmitted)
         ty_media_cross(&p->media, &p->body, p->entering);
     ty_bsdf_spawn(bsdf, sample->wi, u, &p->ray);
@@ -146,6 +148,8 @@ static bool meets_boundary(const ty_integrator* in, const ty_material* material,
     p->body = ty_medium_make(material, &in->scene->shading, point);
     p->entering = ty_dot(p->ray.direction, point->ng) < 0.0f;
     p->at_boundary = ty_media_is_boundary(&p->media, &p->body, p->entering, outside);
+    if (p->body.alone && p->entering && ty_media_holds(&p->media, &p->body))
+        return false; // rounding put the ray outside of what it is in
     ty_media beyond = p->media;
     ty_media_cross(&beyond, &p->body, p->entering);
     if (!p->at_boundary)
@@ -157,14 +161,14 @@ static bool meets_boundary(const ty_integrator* in, const ty_material* material,
         return false;
     }
     const ty_medium* top = ty_media_top(&beyond);
-    p->absorption[1] = top ? top->absorption : ty_rgb_grey(0.0f);
+    p->absorption[1] = top ? top->matter.extinction : ty_rgb_grey(0.0f);
     return true;
 }
 
 static ty_rgb along_medium(const ty_path* p)
 {
     const ty_medium* top = ty_media_top(&p->media);
-    return top ? top->absorption : ty_rgb_grey(0.0f);
+    return top ? top->matter.extinction : ty_rgb_grey(0.0f);
 }
 
 // Beer's law over the way to the surface, and the media on both sides of it.
@@ -174,7 +178,11 @@ static void arrive(const ty_integrator* in, float distance, ty_path* p)
     if (!in->has_media)
         return;
     p->absorption[0] = p->absorption[1] = p->view.absorption;
-    p->beta = ty_rgb_mul(p->beta, ty_path_absorbed(p->absorption[0], distance));
+    const ty_medium* top = ty_media_top(&p->media);
+    if (top && !ty_rgb_is_black(top->matter.albedo))
+        ty_flight_pass(&top->matter, distance, &p->beta);
+    else
+        p->beta = ty_rgb_mul(p->beta, ty_path_absorbed(p->absorption[0], distance));
 }
 
 // Lights along the ray up to t.
@@ -191,6 +199,50 @@ static void meet_lights(const ty_integrator* in, float t, const ty_path* p, ty_f
         out->covered = true;
 }
 
+static bool trace(const ty_integrator* in, const ty_path* p, ty_hit* hit, ty_film_sample* out)
+{
+    bool found = ty_world_intersect(in->scene->world, &p->ray, hit);
+    if (!p->view.done)
+        meet_lights(in, found ? hit->t : TY_FLOAT_MAX, p, out);
+    return found;
+}
+
+// The next surface, past all scatterings before it. False = the path leaves the scene, or ends.
+static bool trace_media(const ty_integrator* in, ty_path* p, ty_hit* hit, ty_counters* counters, ty_film_sample* out)
+{
+    for (;;)
+    {
+        const ty_medium* top = ty_media_top(&p->media);
+        bool found;
+        if (top && top->alone)
+        {
+            found = ty_path_meet_own(in->scene->world, top, &p->ray, hit);
+            if (!found) // through a hole of the mesh: on outside
+            {
+                counters->walks_lost++;
+                ty_media_cross(&p->media, top, false);
+                continue;
+            }
+        }
+        else
+        {
+            p->view.absorption = along_medium(p);
+            found = trace(in, p, hit, out);
+        }
+        if (!found || !top || ty_rgb_is_black(top->matter.albedo))
+            return found;
+        switch (ty_path_scatter(&top->matter, hit->t, p, counters))
+        {
+        case TY_PATH_PASSED:
+            return true;
+        case TY_PATH_ENDED:
+            return false;
+        case TY_PATH_SCATTERED:
+            break;
+        }
+    }
+}
+
 // The surface where the path scatters next, past all it goes straight through. False = it left the scene.
 static bool find_surface(const ty_integrator* in, const ty_sampler* sampler, ty_path* p, ty_bsdf* bsdf,
                          ty_counters* counters, ty_film_sample* out)
@@ -201,11 +253,7 @@ static bool find_surface(const ty_integrator* in, const ty_sampler* sampler, ty_
         ty_hit hit;
         ty_surface_point* point = &bsdf->point; // where the bsdf is prepared: copies of what was just written are slow
         float outside = 1.0f;
-        bool found = ty_world_intersect(scene->world, &p->ray, &hit);
-        if (in->has_media)
-            p->view.absorption = along_medium(p);
-        if (!p->view.done)
-            meet_lights(in, found ? hit.t : TY_FLOAT_MAX, p, out);
+        bool found = in->has_media ? trace_media(in, p, &hit, counters, out) : trace(in, p, &hit, out);
         if (!found)
             return false;
         ty_world_surface(scene->world, &hit, point);
@@ -221,6 +269,8 @@ static bool find_surface(const ty_integrator* in, const ty_sampler* sampler, ty_
             continue;
         }
         ty_material_prepare_within(material, &scene->shading, point, ty_neg(p->ray.direction), outside, bsdf);
+        if (p->bounce == 0 && bsdf->kind == TY_BSDF_CDRF)
+            bsdf->way = hit.t;
         out->covered = true;
         counters->path_vertices++;
         return true;
@@ -228,7 +278,7 @@ static bool find_surface(const ty_integrator* in, const ty_sampler* sampler, ty_
     return false;
 }
 
-static void begin(const ty_integrator* in, const ty_ray* ray, ty_path* p)
+static void begin(const ty_integrator* in, const ty_sampler* sampler, const ty_ray* ray, ty_path* p)
 {
     p->ray = *ray;
     p->cone = ty_cone_begin(in, ray);
@@ -244,6 +294,12 @@ static void begin(const ty_integrator* in, const ty_ray* ray, ty_path* p)
     p->media.count = 0;
     if (in->media.count > 0)
         p->media = in->media;
+    if (in->has_media)
+    {
+        p->rng = ty_sampler_extra(sampler, -1); // no surface has that number
+        p->scatterings = 0;
+        p->entered = 0.0f;
+    }
 }
 
 static void add_emission(const ty_integrator* in, const ty_bsdf* bsdf, const ty_path* p, ty_film_sample* out)
@@ -258,7 +314,7 @@ void ty_path_sample(const ty_integrator* in, const ty_sampler* sampler, const ty
 {
     ty_path p;
     ty_bsdf bsdf;
-    begin(in, ray, &p);
+    begin(in, sampler, ray, &p);
     for (; find_surface(in, sampler, &p, &bsdf, counters, out); p.bounce++)
     {
         if (!ty_rgb_is_black(bsdf.emission))

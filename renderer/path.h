@@ -18,6 +18,9 @@ typedef struct ty_path
     bool at_boundary;     // the present surface bounds a medium:
     bool entering;        // the ray arrived from outside of it
     ty_medium body;       // behind it
+    ty_rng rng;           // of scatterings in media
+    int scatterings;      // in media
+    float entered;        // largest channel of beta at the first of them since the last surface
     ty_rgb absorption[2]; // 1/m, of the media on wo's side of the present surface and beyond it
     ty_media media;       // the ray is in; last, because paths in air leave it untouched
 } ty_path;
@@ -44,6 +47,21 @@ void ty_path_add(const ty_integrator* in, bool indirect, int group, ty_rgb light
 void ty_path_add_limited(const ty_integrator* in, const ty_film_sample* met, ty_film_sample* out);
 
 // --- path_media.c ---
+
+// The next surface of a body within which nothing else exists.
+bool ty_path_meet_own(const ty_world* world, const ty_medium* body, const ty_ray* ray, ty_hit* hit);
+
+#define TY_PATH_MAX_SCATTERINGS 65536 // of a path, in media
+
+typedef enum ty_path_flight
+{
+    TY_PATH_PASSED,    // the distance, without being scattered; beta is weighed on arrival
+    TY_PATH_SCATTERED, // the ray is the next one
+    TY_PATH_ENDED,
+} ty_path_flight;
+
+// A free flight along the path's ray through matter that ends at a distance.
+ty_path_flight ty_path_scatter(const ty_scattering* matter, float distance, ty_path* p, ty_counters* counters);
 
 void ty_path_find_media(const ty_scene* scene, ty_vec3 p, ty_media* out); // closed clear bodies around a point
 ty_rgb ty_path_absorbed(ty_rgb absorption, float distance);               // Beer's law

@@ -92,6 +92,9 @@ void ty_path_direct_light(const ty_integrator* in, const ty_path* p, const ty_bs
     ty_light_sample light;
     if (ty_bsdf_is_delta(bsdf) || !ty_light_set_sample(&in->lights, at, u[2], (ty_vec2){u[0], u[1]}, &light))
         return;
+    // Within such a body there are no lights, and no shadow ray tells of its far side.
+    if (bsdf->kind == TY_BSDF_SURFACE && bsdf->alone && ty_dot(light.wi, bsdf->point.ng) < 0.0f)
+        return;
     float pdf = 0.0f;
     ty_rgb value = ty_rgb_mul(visible_value(bsdf, &light, &pdf), light.radiance);
     float weight = sample_weight(in, &light, pdf) / light.pdf;

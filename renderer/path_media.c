@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clear bodies along a path: where the camera begins, what they absorb, what shadow rays see of transparent things.
 #include "path.h"
+#include <tsuya/shading/walk.h>
 
 ty_rgb ty_path_absorbed(ty_rgb absorption, float distance)
 {
@@ -8,6 +9,67 @@ ty_rgb ty_path_absorbed(ty_rgb absorption, float distance)
         return ty_rgb_grey(1.0f);
     return (ty_rgb){ty_exp(-absorption.r * distance), ty_exp(-absorption.g * distance),
                     ty_exp(-absorption.b * distance)};
+}
+
+bool ty_path_meet_own(const ty_world* world, const ty_medium* body, const ty_ray* ray, ty_hit* hit)
+{
+    if (!ty_world_intersect_instance(world, body->object, body->instance, ray->time, ray->origin, ray->direction,
+                                     TY_FLOAT_MAX, hit))
+        return false;
+    hit->object = body->object;
+    hit->instance = body->instance;
+    hit->time = ray->time;
+    return true;
+}
+
+// Of faint paths some go on for all, as in walks within bodies.
+static bool goes_on(ty_path* p)
+{
+    const float faint = 0.25f;
+    float most = ty_rgb_max(p->beta), least = faint * p->entered;
+    if (most >= least)
+        return most > 0.0f;
+    if (ty_rng_float(&p->rng) * least >= most)
+        return false;
+    p->beta = ty_rgb_scale(p->beta, least / most);
+    return true;
+}
+
+// No light is sampled where the path is scattered: boundaries that bend light stand between. What it meets counts full.
+static void turn(ty_path* p, ty_vec3 origin, ty_vec3 direction)
+{
+    p->ray = ty_ray_make(origin, direction, TY_FLOAT_MAX);
+    p->ray.flags = TY_RAY_FRONT_ONLY;
+    p->ray.mask = TY_MASK_TRANSMISSION;
+    p->view.full = true;
+    p->view.done = false;
+    p->view.seen = TY_MASK_TRANSMISSION;
+    p->indirect = p->soft;
+    p->soft = true;
+}
+
+ty_path_flight ty_path_scatter(const ty_scattering* matter, float distance, ty_path* p, ty_counters* counters)
+{
+    float u = ty_rng_float(&p->rng), flight = ty_flight_sample(matter, &p->beta, u, ty_rng_float(&p->rng));
+    if (!(flight < distance))
+        return TY_PATH_PASSED;
+    counters->interior_rays++;
+    if (p->entered == 0.0f)
+        p->entered = ty_rgb_max(p->beta);
+    ty_flight_scatter(matter, flight, &p->beta);
+    if (++p->scatterings >= TY_PATH_MAX_SCATTERINGS)
+    {
+        counters->walks_cut++;
+        return TY_PATH_ENDED;
+    }
+    if (!goes_on(p))
+        return TY_PATH_ENDED;
+    ty_vec3 origin = ty_mad(p->ray.origin, p->ray.direction, flight);
+    float time = p->ray.time;
+    u = ty_rng_float(&p->rng);
+    turn(p, origin, ty_phase_sample(matter->anisotropy, p->ray.direction, (ty_vec2){u, ty_rng_float(&p->rng)}));
+    p->ray.time = time;
+    return TY_PATH_SCATTERED;
 }
 
 static bool encloses(const ty_world* world, uint32_t object, uint32_t instance, ty_vec3 p)

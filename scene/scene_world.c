@@ -130,8 +130,8 @@ static bool is_closed(const ty_mesh* mesh, const char* name)
     if (!topology.closed)
         ty_log(TY_LOG_WARNING,
                "'%s' has a translucent material but is not closed (%u boundary edges, %u non-manifold, %u "
-               "misoriented): light that gets out of it through the gaps leaves where it entered, and its inner "
-               "side is seen",
+               "misoriented): light gets out of it through the gaps (walks with a diffuse boundary then leave where "
+               "they entered), and its inner side is seen",
                name, topology.boundary_edges, topology.nonmanifold_edges, topology.misoriented_edges);
     return topology.closed;
 }

@@ -83,11 +83,17 @@ static float kernel_gain(const ty_bsdf* b, const ty_shading_context* context)
     return ty_cdrf_gaussian_integral(ty_cdrf_spread(b, b->curvature)) * TY_INV_PI;
 }
 
+// A viewer within a walk's body sees through to where light comes in.
+static bool is_within(const ty_bsdf* b)
+{
+    return b->material->model == TY_MODEL_WALK && !b->entering && b->way > 0.0f;
+}
+
 float ty_bsdf_coat_chance(const ty_bsdf* b)
 {
     if (b->kind == TY_BSDF_SUBSURFACE)
         return b->surface_chance;
-    if (b->kind != TY_BSDF_CDRF || b->coat_weight <= 0.0f)
+    if (b->kind != TY_BSDF_CDRF || b->coat_weight <= 0.0f || is_within(b))
         return 0.0f;
     // The coat carries the highlights, which are bright where they are: never sampled less than one time in ten.
     return ty_clamp(ty_coat_albedo(b, ty_dot(b->wo, b->frame.n)), 0.1f, 0.9f);
@@ -106,7 +112,7 @@ bool ty_bsdf_take_interior(ty_bsdf* b, const ty_shading_context* context, const 
         return ty_surface_take_interior(b, context, u, extra, weight);
     if (b->material->cdrf.evaluate == TY_CDRF_PROBE && context && context->world)
         b->curvature = ty_mean_curvature(context->world, &b->point);
-    float coat = ty_coat_albedo(b, ty_dot(b->wo, b->frame.n));
+    float coat = is_within(b) ? 0.0f : ty_coat_albedo(b, ty_dot(b->wo, b->frame.n));
     float through = (1.0f - coat) / (1.0f - b->coat_weight * b->coat_row.average);
     *weight = ty_rgb_scale(b->color, through * kernel_gain(b, context));
     ty_surface_point exit;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials: creation from definitions, and the preparation of lobes at a point.
+#include "fresnel.h"
 #include "material_private.h"
 #include "microfacet.h"
 #include "surface_private.h"
@@ -33,6 +34,15 @@ static ty_status check_surface(const ty_surface_def* def, ty_error* error)
     ty_status status = check_range("coat_ior", def->coat_ior, 1.0f, 3.0f, error);
     if (status == TY_OK)
         status = check_range("transmission_depth", def->transmission_depth, 0.0f, TY_FLOAT_MAX, error);
+    if (status == TY_OK)
+        status =
+            check_range("transmission_scatter_anisotropy", def->transmission_scatter_anisotropy, -0.99f, 0.99f, error);
+    if (status == TY_OK && !ty_input_is_zero(&def->transmission_scatter) &&
+        (def->transmission_depth <= 0.0f || def->thin_walled))
+        return ty_error_set(
+            error, TY_BAD_INPUT,
+            "transmission_scatter: counts scatterings in `transmission_depth`, which must be above 0 in "
+            "a body that is not thin_walled");
     if (status == TY_OK && ty_input_is_constant(&def->specular_ior))
         status = check_range("specular_ior", def->specular_ior.value.r, 1.0f, 3.0f, error);
     if (status == TY_OK && ty_input_is_constant(&def->opacity))
@@ -139,6 +149,51 @@ static ty_status check_walk(const ty_walk_def* d, ty_error* error)
     return status;
 }
 
+// Mean reflectance of diffuse light on the inner side of a dielectric: F_i = 1 - (1 - F_e) / eta^2.
+static float inner_reflection(float eta)
+{
+    enum
+    {
+        STEPS = 256
+    };
+    float outer = 0.0f;
+    for (int i = 0; i < STEPS; i++)
+    {
+        float mu = ((float)i + 0.5f) / STEPS;
+        outer += 2.0f * mu * ty_fresnel(mu, eta) / STEPS;
+    }
+    return 1.0f - (1.0f - outer) / (eta * eta);
+}
+
+// The boundary is that of a clear `surface`, what is within stays. Replaces *material.
+static ty_status put_in_glass(const ty_walk_def* def, ty_material** material, ty_error* error)
+{
+    ty_surface_def s = ty_surface_def_default();
+    ty_material *matter = *material, *glass;
+    s.transmission_weight = ty_input_scalar(1.0f);
+    s.specular_ior = ty_input_scalar(def->common.specular_ior);
+    s.specular_weight = def->common.specular_weight;
+    s.specular_roughness = def->common.specular_roughness;
+    s.normal = def->common.normal;
+    s.normal_strength = def->common.normal_strength;
+    s.bump = def->common.bump;
+    if (ty_input_is_constant(&s.specular_roughness) && s.specular_roughness.value.r < 0.0f)
+        s.specular_roughness =
+            ty_input_scalar(ty_moisture_optics_make(ty_moisture_at(&matter->cdrf.moisture, NULL, NULL)).roughness);
+    *material = NULL;
+    ty_status status = ty_material_create_surface(&s, &glass, error);
+    if (status == TY_OK)
+    {
+        glass->cdrf = matter->cdrf;
+        glass->optics_are_constant = matter->optics_are_constant;
+        glass->optics = matter->optics;
+        glass->inner_reflection = inner_reflection(def->common.specular_ior);
+        *material = glass;
+    }
+    ty_material_destroy(matter);
+    return status;
+}
+
 ty_status ty_material_create_walk(const ty_walk_def* def, ty_material** out, ty_error* error)
 {
     *out = NULL;
@@ -149,6 +204,10 @@ ty_status ty_material_create_walk(const ty_walk_def* def, ty_material** out, ty_
     common.kernel = TY_CDRF_POISSON;
     common.evaluate = TY_CDRF_DEPTH;
     status = ty_material_create_cdrf(&common, out, error);
+    if (status != TY_OK)
+        return status;
+    if (def->boundary == TY_WALK_DIELECTRIC)
+        status = put_in_glass(def, out, error);
     if (status != TY_OK)
         return status;
     (*out)->model = TY_MODEL_WALK;
@@ -268,7 +327,8 @@ static void prepare_layers(const ty_material* material, const ty_shading_context
         ty_cdrf_prepare(material, context, out);
         break;
     case TY_MODEL_WALK:
-        ty_walk_prepare(material, context, out);
+        (material->walk.boundary == TY_WALK_DIELECTRIC ? ty_walk_prepare_boundary : ty_walk_prepare)(material, context,
+                                                                                                     out);
         break;
     }
 }

@@ -19,6 +19,7 @@ ty_surface_def ty_surface_def_default(void)
         .transmission_weight = ty_input_scalar(0.0f),
         .transmission_color = ty_input_scalar(1.0f),
         .transmission_depth = 0.0f,
+        .transmission_scatter = ty_input_scalar(0.0f),
         .coat_weight = ty_input_scalar(0.0f),
         .coat_color = ty_input_scalar(1.0f),
         .coat_roughness = ty_input_scalar(0.0f),
@@ -120,6 +121,9 @@ static const ty_param surface_rows[] = {
     ROW(transmission_weight, SCALAR, "", 0, 1, "share of the dielectric base that is clear instead of diffuse"),
     ROW(transmission_color, COLOR, "", 0, 1, "tint over transmission_depth, or per surface where that is 0"),
     ROW(transmission_depth, NUMBER, "m", 0, 1000, "way through the body after which transmission_color is reached"),
+    ROW(transmission_scatter, COLOR, "", 0, 1000,
+        "scatterings in transmission_depth: mist in the body; what colour and it leave lacks absorbs nothing"),
+    ROW(transmission_scatter_anisotropy, NUMBER, "", -0.99, 0.99, "their mean cosine: forward positive"),
     ROW(coat_weight, SCALAR, "", 0, 1, "strength of the clear coat"),
     ROW(coat_color, COLOR, "", 0, 1, "what the coat leaves of light that goes straight through it and back"),
     ROW(coat_roughness, SCALAR, "", 0, 1, "roughness of the coat"),
@@ -191,7 +195,7 @@ static const ty_param cdrf_rows[] = {
 };
 #undef DEF
 
-static const char* const boundary_names[] = {"diffuse", NULL};
+static const char* const boundary_names[] = {"diffuse", "dielectric", NULL};
 const char* const ty_walk_preset_names[] = {"none",      "apple", "chicken",  "cream",      "marble", "potato",
                                             "skim_milk", "skin",  "soy_milk", "whole_milk", NULL};
 
@@ -202,7 +206,7 @@ static const ty_param walk_rows[] = {
      .unit = "",
      .choices = boundary_names,
      .offset = offsetof(ty_walk_def, boundary),
-     .help = "diffuse: light enters and leaves by the cosine, as cdrf means it"},
+     .help = "diffuse: light enters and leaves by the cosine, as cdrf means it; dielectric: refracted and reflected"},
     {.name = "preset",
      .type = TY_PARAM_ENUM,
      .unit = "",

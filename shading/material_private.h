@@ -19,6 +19,7 @@ struct ty_material
     ty_surface_def surface;
     ty_cdrf_def cdrf; // of `walk`: what both have in common
     ty_walk_def walk;
+    float inner_reflection;    // mean, of diffuse light within `walk` with a dielectric boundary; 0 of a diffuse one
     ty_albedo_table* specular; // E of the dielectric specular of `surface`, or NULL where it has none
     ty_albedo_table* coat;     // E of the coat of `surface`, or of the specular reflection of `cdrf`
     ty_albedo_table* fuzz;     // E of the fuzz
@@ -75,6 +76,7 @@ ty_scattering ty_walk_matter(ty_rgb color, float radius, ty_rgb scale, float ani
 // out holds point, frame, wo, entering and bent already; all else is zero.
 void ty_surface_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
 void ty_cdrf_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
+void ty_walk_prepare_boundary(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
 void ty_walk_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
 
 // Shading normals may turn away from a viewer who sees the triangle: bend them back until they face wo.

@@ -12,7 +12,13 @@ materials:
   skin: { model: cdrf, color: [0.8, 0.7, 0.6], mean_free_path: 1.5 }
   glass: { model: surface, transmission_weight: 1, specular_roughness: 0.2 }
   grey: { model: surface, base_color: 0.5 }
+  milk: { model: walk, preset: skim_milk }
+  wax: { model: walk, boundary: dielectric, subsurface_color: [0.8, 0.6, 0.4], subsurface_radius: 3 }
+  ice: { model: surface, transmission_weight: 1, transmission_depth: 0.01, transmission_scatter: [1, 2, 3] }
 objects:
+  - { mesh: ball, material: milk, translate: [-0.03, 0.01, 0.01] }
+  - { mesh: ball, material: wax, translate: [0.02, 0.01, 0.015] }
+  - { mesh: ball, material: ice, translate: [0, 0.008, 0.03] }
   - { mesh: ball, material: skin, translate: [-0.012, 0.01, 0] }
   - { mesh: ball, material: glass, translate: [0.012, 0.01, 0] }
   - { mesh: floor, material: grey }
@@ -31,6 +37,10 @@ expect 0 "$tsuya" merge b.exr a.exr -o merged.exr
 same t1.exr merged.exr
 expect 0 "$tsuya" render scene.yaml -o whole.exr --samples 0-63
 same t1.exr whole.exr
+
+expect 0 "$tsuya" render scene.yaml -o crop.exr --crop 20,9,45,30 --threads 3
+expect 0 "$tsuya" render scene.yaml -o crop1.exr --crop 20,9,45,30 --threads 1
+same crop.exr crop1.exr
 
 # A part of a part: 0-15 and 16-31 join to the same part as 0-31.
 expect 0 "$tsuya" render scene.yaml -o c.exr --samples 0-15

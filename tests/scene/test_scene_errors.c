@@ -32,6 +32,27 @@ static void six_mistakes_are_all_listed(void** state)
     assert_int_equal(fixture_errors.count, 6);
 }
 
+static void matter_out_of_range(void** state)
+{
+    (void)state;
+#define WALK "tsuya: 1\nmaterials:\n  m: { model: walk, "
+    fixture_one_error(WALK "subsurface_color: 1.2 }\n", 3, 39, "out of range, expected");
+    fixture_one_error(WALK "subsurface_color: 1.2 }\n", 3, 39, "-1..1");
+    fixture_one_error(WALK "color: [0.5, 1.01, 0] }\n", 3, 34, "0..1");
+    fixture_one_error(WALK "subsurface_radius: 0 }\n", 3, 40, "1e-06..1000000 mm");
+    fixture_one_error(WALK "absorption: -0.1 }\n", 3, 33, "0..1000000");
+    fixture_one_error(WALK "specular_ior: 0.9 }\n", 3, 35, "1..3");
+    fixture_one_error(WALK "anisotropy: 1 }\n", 3, 33, "-0.99..0.99");
+    fixture_one_error(WALK "preset: marbel }\n", 3, 29, "did you mean 'marble'?");
+    fixture_one_error(WALK "preset: brick }\n", 3, 29, "is not one of: none, apple");
+    fixture_one_error(WALK "preset: apple, scattering: 1 }\n", 3, 29, "leave out one of them");
+    fixture_one_error(WALK "evaluate: local, bounday: diffuse }\n", 3, 38, "did you mean 'boundary'?");
+    fixture_one_error(
+        "tsuya: 1\nmaterials:\n  m: { model: surface, transmission_weight: 1, transmission_scatter: 2 }\n", 3, 70,
+        "must be above 0");
+#undef WALK
+}
+
 static void files_that_are_no_yaml(void** state)
 {
     (void)state;
@@ -274,6 +295,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         FIXTURE_TEST(six_mistakes_are_all_listed),
+        FIXTURE_TEST(matter_out_of_range),
         FIXTURE_TEST(files_that_are_no_yaml),
         FIXTURE_TEST(versions),
         FIXTURE_TEST(duplicate_keys),

@@ -415,14 +415,14 @@ static void test_emission_absorption_albedo(void** state)
     ty_bsdf b = bsdf_at(m, 0.3);
     ty_medium medium = ty_medium_make(m, NULL, &b.point);
     assert_near(medium.ior, 1.5, 0);
-    assert_near(medium.absorption.r, 0.0, 1e-5);
-    assert_near(medium.absorption.g, log(2) / 0.01, 1e-3);
-    assert_near(medium.absorption.b, log(4) / 0.01, 1e-3);
+    assert_near(medium.matter.extinction.r, 0.0, 1e-5);
+    assert_near(medium.matter.extinction.g, log(2) / 0.01, 1e-3);
+    assert_near(medium.matter.extinction.b, log(4) / 0.01, 1e-3);
     ty_material_destroy(m);
     d.transmission_depth = 0;
     m = surface(&d);
     b = bsdf_at(m, 0.0);
-    assert_near(ty_medium_make(m, NULL, &b.point).absorption.g, 0.0, 0.0);
+    assert_near(ty_medium_make(m, NULL, &b.point).matter.extinction.g, 0.0, 0.0);
     assert_near(mean_weight(&b, 4000).g, 0.04 + 0.96 * 0.5, 1e-3);
     ty_material_destroy(m);
 }

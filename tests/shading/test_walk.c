@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random walks: free flights and the phase function by their densities, bodies by what is known of them.
 #include "stage.h"
+#include <tsuya/shading/media.h>
 #include <tsuya/shading/sampling.h>
 #include <tsuya/shading/walk.h>
 
@@ -356,6 +357,36 @@ static void test_material_absorbs(void** state)
     ty_material_destroy(m);
 }
 
+// Mist in a clear body: per depth, and grey absorption where the colour leaves less than is scattered.
+static void test_mist(void** state)
+{
+    (void)state;
+    ty_error error = {0};
+    ty_surface_def d = ty_surface_def_default();
+    d.transmission_weight = ty_input_scalar(1);
+    d.transmission_depth = 0.01f;
+    d.transmission_scatter = ty_input_make(ty_rgb_make(1, 2, 3));
+    d.transmission_scatter_anisotropy = 0.4f;
+    ty_material* m = NULL;
+    assert_int_equal(ty_material_create_surface(&d, &m, &error), TY_OK);
+    ty_scattering s = ty_medium_make(m, NULL, &pole).matter;
+    assert_near(s.extinction.r, 300, 1e-3);
+    assert_near(s.extinction.b, 300, 1e-3);
+    assert_near(s.albedo.r, 1.0 / 3, 1e-5);
+    assert_near(s.albedo.b, 1, 1e-5);
+    assert_near(s.anisotropy, 0.4f, 0);
+    ty_material_destroy(m);
+    d.transmission_color = ty_input_scalar(0.36787944f);
+    d.transmission_scatter = ty_input_scalar(0.5f);
+    assert_int_equal(ty_material_create_surface(&d, &m, &error), TY_OK);
+    s = ty_medium_make(m, NULL, &pole).matter;
+    assert_near(s.extinction.g, 100, 1e-3);
+    assert_near(s.albedo.g, 0.5, 1e-5);
+    ty_material_destroy(m);
+    d.transmission_depth = 0;
+    assert_int_equal(ty_material_create_surface(&d, &m, &error), TY_BAD_INPUT);
+}
+
 static void test_refused(void** state)
 {
     (void)state;
@@ -410,13 +441,21 @@ static void test_open_mesh(void** state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sphere),           cmocka_unit_test(test_exits),
-        cmocka_unit_test(test_similarity),       cmocka_unit_test(test_channels),
-        cmocka_unit_test(test_absorption_alone), cmocka_unit_test(test_phase_function),
-        cmocka_unit_test(test_albedo_inversion), cmocka_unit_test(test_affine_instance),
-        cmocka_unit_test(test_overlap),          cmocka_unit_test(test_furnace),
-        cmocka_unit_test(test_matter),           cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_material_absorbs), cmocka_unit_test(test_open_mesh),
+        cmocka_unit_test(test_sphere),
+        cmocka_unit_test(test_exits),
+        cmocka_unit_test(test_similarity),
+        cmocka_unit_test(test_channels),
+        cmocka_unit_test(test_absorption_alone),
+        cmocka_unit_test(test_phase_function),
+        cmocka_unit_test(test_albedo_inversion),
+        cmocka_unit_test(test_affine_instance),
+        cmocka_unit_test(test_overlap),
+        cmocka_unit_test(test_furnace),
+        cmocka_unit_test(test_matter),
+        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_mist),
+        cmocka_unit_test(test_material_absorbs),
+        cmocka_unit_test(test_open_mesh),
     };
     return cmocka_run_group_tests(tests, make_ball, drop_ball);
 }

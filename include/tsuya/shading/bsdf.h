@@ -64,6 +64,7 @@ typedef struct ty_bsdf
     // Parameters at the point, meaning by kind. What follows is not set for MATTE.
     bool inside;                   // surface: wo is within a transmitting body
     bool thin;                     // surface: a sheet
+    bool alone;                    // surface: of a body within which nothing else exists
     ty_rgb diffuse, diffuse_below; // surface: albedos of the diffuse base, reflected and (of sheets) transmitted
     float diffuse_roughness;
     ty_rgb specular_tint;    // of the dielectric
@@ -109,6 +110,7 @@ typedef struct ty_bsdf
 
     // walk: mean_free_path 0 = light leaves where it entered
     ty_scattering matter;
+    float way;        // m: how far away the viewer is where it is within the body; 0 = somewhere
     uint32_t flights; // of the walk, once its interior is taken
     ty_walk_end walk_end;
 } ty_bsdf;

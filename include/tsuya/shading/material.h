@@ -34,8 +34,10 @@ typedef struct ty_surface_def
     ty_input specular_roughness_anisotropy; // 0..1: longer along the texture's u, smaller across
     ty_input specular_rotation;             // radians, of that direction about the normal
     ty_input transmission_weight;
-    ty_input transmission_color; // tint at normal passage of transmission_depth, or per interface when that is 0
-    float transmission_depth;    // m
+    ty_input transmission_color;   // tint at normal passage of transmission_depth, or per interface when that is 0
+    float transmission_depth;      // m
+    ty_input transmission_scatter; // share of the light that is scattered in transmission_depth, or more than all
+    float transmission_scatter_anisotropy; // -.99..+.99
     ty_input coat_weight;
     ty_input coat_color; // what is left of light after going through it and back, straight
     ty_input coat_roughness;
@@ -122,7 +124,8 @@ typedef struct ty_cdrf_def
 
 typedef enum ty_walk_boundary
 {
-    TY_WALK_DIFFUSE, // light enters and leaves by the cosine: what `cdrf` stands for
+    TY_WALK_DIFFUSE,    // light enters and leaves by the cosine: what `cdrf` stands for
+    TY_WALK_DIELECTRIC, // it is refracted, and reflected on the inner side
 } ty_walk_boundary;
 
 // One of preset, scattering, subsurface_color and (without any) color says what is within.

@@ -11,7 +11,8 @@ typedef struct ty_medium
     uint32_t object, instance; // of the body
     int priority;
     float ior;
-    ty_rgb absorption; // 1/m
+    bool alone;           // within it nothing else exists: rays meet its own surface only
+    ty_scattering matter; // albedo 0: it only absorbs
 } ty_medium;
 
 // Highest priority last, of equals the one entered last: the last is where the ray is. Plain data.
@@ -33,6 +34,9 @@ static inline const ty_medium* ty_media_top(const ty_media* media)
 // Whether the surface of a body is a boundary for a ray that enters (or leaves) it, or lies within a body of higher
 // priority. *outside: the index on the far side of the body from its surface, where it is one.
 bool ty_media_is_boundary(const ty_media* media, const ty_medium* body, bool entering, float* outside);
+
+// Whether it is among them.
+bool ty_media_holds(const ty_media* media, const ty_medium* body);
 
 // The ray goes on beyond the body's surface. More bodies than there is room for are left out.
 void ty_media_cross(ty_media* media, const ty_medium* body, bool entering);
