@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The heap in Cycles: blender -b --factory-startup --python cycles.py -- FOLDER SAMPLES SEED THREADS WIDTH HEIGHT OUT.exr
+GRAINS MILLIMETRES. GRAINS is diffuse, burley or random_walk, the last two with that mean free path.
 Reads the PLY files of geometry.py; every number is that of scene.yaml, which is y up, as the camera here is."""
 import math
 import struct
@@ -8,7 +9,7 @@ import sys
 import bpy
 import mathutils
 
-folder, samples, seed, threads, width, height, output = sys.argv[sys.argv.index("--") + 1 :]
+folder, samples, seed, threads, width, height, output, grains, millimetres = sys.argv[sys.argv.index("--") + 1 :]
 
 
 def read_ply(name):
@@ -37,11 +38,27 @@ def diffuse(name, albedo):
     return material
 
 
+def subsurface(name, albedo):
+    """Light enters by the cosine. Cycles takes 1/(4 pi) of the radius for the mean free path of both ways."""
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    nodes = material.node_tree.nodes
+    nodes.clear()
+    shader, out = nodes.new("ShaderNodeSubsurfaceScattering"), nodes.new("ShaderNodeOutputMaterial")
+    shader.falloff = "BURLEY" if grains == "burley" else "RANDOM_WALK_FIXED_RADIUS"
+    shader.inputs["Color"].default_value = (albedo, albedo, albedo, 1.0)
+    shader.inputs["Radius"].default_value = (1.0, 1.0, 1.0)
+    shader.inputs["Scale"].default_value = 4.0 * math.pi * 1e-3 * float(millimetres)
+    material.node_tree.links.new(shader.outputs[0], out.inputs["Surface"])
+    return material
+
+
 def mesh_of(name, albedo, smooth):
     rows, faces = read_ply(name + ".ply")
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(rows, [], faces)
-    mesh.materials.append(diffuse(name, albedo))
+    translucent = name == "grain" and grains != "diffuse"
+    mesh.materials.append((subsurface if translucent else diffuse)(name, albedo))
     mesh.polygons.foreach_set("use_smooth", [smooth] * len(mesh.polygons))
     mesh.update()
     return mesh

@@ -211,26 +211,26 @@ void bench_speed(const bench_options* options)
     ty_error error;
     if (ty_workers_create(options->threads, &workers, &error) != TY_OK)
         workers = NULL;
-    int rounds = options->quick ? 3 : 7;
+    int rounds = options->quick ? 3 : 7, width = options->quick ? 240 : 480, height = width * 9 / 16;
     for (int r = 0; r < rounds; r++)
         for (int w = 0; w < WAYS; w++)
         {
             picture_def def = {.path = "build/bench/heap",
                                .sets = &materials[w],
                                .set_count = 1,
-                               .size = {480, 270},
+                               .size = {width, height},
                                .samples = 16,
                                .workers = workers};
             add_picture(&s[w], def, (uint64_t)(1 + r));
         }
-    report_title("Speed on the heap of bench/heap, 480 x 270, colour .8, l .4 mm, in turn, medians of CPU time", NULL);
+    report_title("Speed on the heap of bench/heap, colour .8, l .4 mm, in turn, medians of CPU time", NULL);
     printf("  %-14s %12s %12s %12s %12s\n", "", "Msamples/s", "grain MSE", "K = MSE s", "grain mean");
     double speed[WAYS], k[WAYS];
     for (int w = 0; w < WAYS; w++)
     {
         noise n = measure_noise(&s[w], 2000);
         double seconds = median_seconds(&s[w]);
-        speed[w] = 480.0 * 270.0 * s[w].samples / seconds;
+        speed[w] = (double)width * height * s[w].samples / seconds;
         k[w] = n.mse * seconds;
         printf("  %-14s %12.4f %12.6f %12.6f %12.6f\n", names[w], speed[w] * 1e-6, n.mse, k[w], n.mean);
     }
