@@ -203,6 +203,8 @@ static void add_further_type(ty_text* out, const ty_param_table* table, const ty
     ty_text_add(out, "");
     if (table == ty_object_params() && strcmp(row->name, "scale") == 0)
         ty_text_add(out, ", {\"type\": \"number\"}");
+    if (table == ty_cdrf_params() && strcmp(row->name, "calibration") == 0)
+        ty_text_add(out, ", {\"type\": \"string\"}"); // of a file
     if (strncmp(table->name, "asset.", 6) != 0 || row->type != TY_PARAM_PATH)
         return;
     for (int i = 0; i < count; ++i)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Walks in spheres against published and tabulated numbers, and the fits through them.
-#include "spherical.h"
+#include "stage.h"
 #include <tsuya/shading/calibrate.h>
+#include <tsuya/shading/sampling.h>
+#include <tsuya/shading/walk.h>
 
 static ty_sphere_walk walked(float optical_radius, float albedo, float anisotropy, float ior, int count)
 {
@@ -68,6 +70,38 @@ static void test_similar_media(void** state)
     ty_sphere_walk water = walked(8, 1, 0, 1.33f, 40000), glass = walked(8, 1, 0, 1.5f, 40000);
     assert_near(8 * ty_sphere_fit_poisson(&water), 2.2, 0.15);
     assert_near(8 * ty_sphere_fit_poisson(&glass), 2.7, 0.25);
+}
+
+// The same moments as by the material's walks through a mesh.
+static void test_walks_of_the_material(void** state)
+{
+    (void)state;
+    const int count = 40000;
+    const float radius = 1e-3f;
+    ty_shape_def shape = shape_of(TY_SHAPE_SPHERE, radius, 0, 0);
+    stage ball;
+    stage_init_one(&ball, &shape);
+    ty_surface_point pole = seen(&ball, ty_vec3_make(0, 0.01f, 0), ty_vec3_make(0, -1, 0));
+    ty_scattering matter = {ty_rgb_grey(3 / radius), ty_rgb_grey(0.99f), 0};
+    ty_frame frame = ty_frame_from_normal(ty_neg(pole.ng));
+    ty_rng rng = ty_rng_make((ty_seed){5}, 1, 2);
+    double sums[3] = {0};
+    for (int i = 0; i < count; i++)
+    {
+        ty_walk w;
+        ty_vec3 d = ty_sample_cosine((ty_vec2){ty_rng_float(&rng), ty_rng_float(&rng)});
+        if (ty_walk_through(ball.world, &pole, &matter, ty_to_world(frame, d), ty_rng_float(&rng), &rng, &w) !=
+            TY_WALK_LEFT)
+            continue;
+        double x = (double)ty_dot(pole.ng, w.exit.ng), weight = (double)w.beta.g / count;
+        sums[0] += weight;
+        sums[1] += weight * x;
+        sums[2] += weight * (1.5 * x * x - 0.5);
+    }
+    stage_term(&ball);
+    ty_sphere_walk own = walked(3, 0.99f, 0, 1, 100000);
+    for (int l = 0; l < 3; l++)
+        assert_near(sums[l], own.moments[l], 0.008);
 }
 
 static void test_workers_change_nothing(void** state)
@@ -140,6 +174,7 @@ int main(void)
         cmocka_unit_test(test_mean_scatterings),
         cmocka_unit_test(test_kernels_fit_as_tabulated),
         cmocka_unit_test(test_similar_media),
+        cmocka_unit_test(test_walks_of_the_material),
         cmocka_unit_test(test_workers_change_nothing),
         cmocka_unit_test(test_law_is_found_again),
         cmocka_unit_test(test_untold_stays),
