@@ -150,12 +150,18 @@ static ty_object_flags object_flags(const ty_loader* loader, const ty_scene_obje
                                     const ty_placed_object* asset)
 {
     ty_object_flags flags = {0}; // the mask is looked at again for every frame
+    bool scatters = false;
     for (uint32_t k = 0; k < ty_scene_material_count(object); ++k)
-        flags.closed_subsurface |= ty_material_is_subsurface(loader->scene->materials[ty_scene_material_at(object, k)]);
+    {
+        const ty_material* material = loader->scene->materials[ty_scene_material_at(object, k)];
+        flags.closed_subsurface |= ty_material_is_subsurface(material);
+        scatters = scatters || (ty_material_traits(material) & TY_TRAIT_SCATTERING);
+    }
     meshes all = meshes_of(asset);
     for (int i = 0; i < all.count; ++i)
     {
-        flags.closed_subsurface = flags.closed_subsurface && is_closed(all.items[i], asset->name);
+        if (flags.closed_subsurface || scatters)
+            flags.closed_subsurface = is_closed(all.items[i], asset->name) && flags.closed_subsurface;
         warn_untextured(loader, object, all.items[i], asset->name);
     }
     return flags;

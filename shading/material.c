@@ -69,7 +69,9 @@ static unsigned surface_traits(const ty_surface_def* s)
     bool smooth = !ty_input_is_constant(&s->specular_roughness) || s->specular_roughness.value.r < TY_SMOOTH_ROUGHNESS;
     bool passes =
         !ty_input_is_constant(&s->opacity) || s->opacity.value.r < 1.0f || (clear && s->thin_walled && smooth);
-    return (passes ? TY_TRAIT_TRANSPARENT : 0u) | (clear && !s->thin_walled ? TY_TRAIT_MEDIUM : 0u);
+    unsigned within =
+        ty_input_is_zero(&s->transmission_scatter) ? TY_TRAIT_MEDIUM : TY_TRAIT_MEDIUM | TY_TRAIT_SCATTERING;
+    return (passes ? TY_TRAIT_TRANSPARENT : 0u) | (clear && !s->thin_walled ? within : 0u);
 }
 
 ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** out, ty_error* error)

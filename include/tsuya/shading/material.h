@@ -198,6 +198,7 @@ typedef enum ty_material_trait
 {
     TY_TRAIT_TRANSPARENT = 1, // light may go straight through: opacity, smooth sheets
     TY_TRAIT_MEDIUM = 2,      // encloses a medium that light enters
+    TY_TRAIT_SCATTERING = 4,  // which scatters it
 } ty_material_trait;
 unsigned ty_material_traits(const ty_material* material);
 
