@@ -153,8 +153,8 @@ static row row_of(const job* j, int index)
     for (int i = 0; i < j->radius_count; i++)
     {
         float x = r.optics.mean_free_path / (float)(j->radii[i] * 1e-3);
-        r.t[i] = ty_cdrf_poisson_t(x);
-        r.sigma[i] = ty_cdrf_gaussian_sigma(x);
+        r.t[i] = ty_cdrf_poisson_t(x, 0.0f);
+        r.sigma[i] = ty_cdrf_gaussian_sigma(x, 0.0f);
     }
     return r;
 }

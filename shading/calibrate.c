@@ -13,7 +13,7 @@ typedef struct fit_job
 
 static double error_poisson(const ty_sphere_walk* walk, double length, double radius)
 {
-    return ty_sphere_error_poisson(walk, (double)ty_cdrf_poisson_t((float)(length / radius)));
+    return ty_sphere_error_poisson(walk, (double)ty_cdrf_poisson_t((float)(length / radius), 0.0f));
 }
 
 static double error_published(const ty_sphere_walk* walk, double length, double radius)

@@ -14,38 +14,105 @@ static ty_moisture_optics optics_at(const ty_material* m, const ty_shading_conte
     return ty_moisture_law_at(&m->cdrf.calibration, ty_moisture_at(&m->cdrf.moisture, context, p));
 }
 
-static void prepare_coat(const ty_material* material, const ty_shading_context* context,
-                         const ty_moisture_optics* optics, ty_bsdf* b)
+static void prepare_coat(const ty_material* material, const ty_shading_context* context, const ty_surface_point* p,
+                         const ty_moisture_optics* optics, ty_cdrf_optics* out)
 {
     const ty_cdrf_def* d = &material->cdrf;
     if (!material->coat)
         return;
-    float roughness = ty_input_float(&d->specular_roughness, context, &b->point);
+    float roughness = ty_input_float(&d->specular_roughness, context, p);
     roughness = roughness < 0.0f ? optics->roughness : ty_min(roughness, 1.0f);
     // A dry surface is dusty and broken: half its area shines.
-    float weight = ty_clamp(ty_input_float(&d->specular_weight, context, &b->point), 0.0f, 1.0f);
-    b->coat_weight = weight * (0.5f + 0.5f * optics->film);
-    b->coat_alpha = ty_ggx_alpha(roughness);
-    b->coat_eta = d->specular_ior;
-    b->coat_row = ty_albedo_table_row(material->coat, roughness, d->specular_ior);
+    float weight = ty_clamp(ty_input_float(&d->specular_weight, context, p), 0.0f, 1.0f);
+    out->coat_weight = weight * (0.5f + 0.5f * optics->film);
+    out->coat_alpha = ty_ggx_alpha(roughness);
+    out->coat_row = ty_albedo_table_row(material->coat, roughness, d->specular_ior);
+}
+
+// What the boundary sends back of diffuse light from within: 1 - (1 - F_e) / ior^2, with the mean reflectance from
+// outside fitted (Kulla & Conty 2017).
+static float internal_reflectance(float ior, float weight)
+{
+    float outside = (ior - 1.0f) / (4.08567f + 1.00071f * ior);
+    return weight * (1.0f - (1.0f - outside) / (ior * ior));
+}
+
+static void prepare_medium(const ty_material* material, const ty_shading_context* context, const ty_surface_point* p,
+                           const ty_moisture_optics* optics, ty_cdrf_optics* out)
+{
+    const ty_cdrf_def* d = &material->cdrf;
+    ty_rgb scale = ty_input_color(&d->mean_free_path_scale, context, p);
+    float path = ty_input_float(&d->mean_free_path, context, p);
+    out->sigma_slope = 0.0f;
+    if (path < 0.0f)
+    {
+        path = optics->mean_free_path;
+        // Left to the moisture, the published form keeps the published law, linear in curvature.
+        out->sigma_slope = d->kernel == TY_CDRF_GAUSSIAN_PUBLISHED ? optics->gaussian_sigma : 0.0f;
+    }
+    const float scales[3] = {scale.r, scale.g, scale.b}, colors[3] = {out->color.r, out->color.g, out->color.b};
+    float internal = internal_reflectance(d->specular_ior, out->coat_weight);
+    for (int i = 0; i < 3; i++)
+    {
+        out->mean_free_path[i] = ty_max(path * scales[i], 0.0f);
+        out->loss[i] = ty_cdrf_loss(colors[i], internal);
+    }
+    const float *l = out->mean_free_path, *a = out->loss;
+    out->grey = l[0] == l[1] && l[1] == l[2] && a[0] == a[1] && a[1] == a[2];
+}
+
+static ty_cdrf_optics make_optics(const ty_material* material, const ty_shading_context* context,
+                                  const ty_surface_point* p)
+{
+    const ty_cdrf_def* d = &material->cdrf;
+    ty_cdrf_optics out = {0};
+    ty_moisture_optics optics = optics_at(material, context, p);
+    ty_rgb color = ty_input_color(&d->color, context, p);
+    out.color = ty_rgb_make(ty_moisture_color(&optics, color.r), ty_moisture_color(&optics, color.g),
+                            ty_moisture_color(&optics, color.b));
+    prepare_coat(material, context, p, &optics, &out);
+    prepare_medium(material, context, p, &optics, &out);
+    return out;
+}
+
+void ty_cdrf_begin(ty_material* material)
+{
+    const ty_cdrf_def* d = &material->cdrf;
+    material->spread = ty_spread_table_create(d->kernel);
+    if (d->evaluate == TY_CDRF_LOCAL && d->kernel == TY_CDRF_POISSON)
+        material->poisson = ty_poisson_table_create();
+    if (material->cdrf_is_constant)
+        material->cdrf_optics = make_optics(material, NULL, NULL);
 }
 
 void ty_cdrf_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
 {
     const ty_cdrf_def* d = &material->cdrf;
-    ty_moisture_optics optics = optics_at(material, context, &b->point);
-    ty_rgb color = ty_input_color(&d->color, context, &b->point);
-    b->color = ty_rgb_make(ty_moisture_color(&optics, color.r), ty_moisture_color(&optics, color.g),
-                           ty_moisture_color(&optics, color.b));
-    b->mean_free_path = ty_input_float(&d->mean_free_path, context, &b->point);
-    if (b->mean_free_path < 0.0f)
+    const ty_cdrf_optics* o = &material->cdrf_optics;
+    ty_cdrf_optics made;
+    if (!material->cdrf_is_constant)
     {
-        b->mean_free_path = optics.mean_free_path;
-        // Left to the moisture, the published form keeps the published law, linear in curvature.
-        b->sigma_slope = d->kernel == TY_CDRF_GAUSSIAN_PUBLISHED ? optics.gaussian_sigma : 0.0f;
+        made = make_optics(material, context, &b->point);
+        o = &made;
     }
-    prepare_coat(material, context, &optics, b);
     b->kind = TY_BSDF_CDRF;
+    b->flights = 0;
+    b->walk_end = TY_WALK_LEFT;
+    b->color = o->color;
+    b->grey = o->grey;
+    b->sigma_slope = o->sigma_slope;
+    for (int i = 0; i < 3; i++)
+    {
+        b->mean_free_path[i] = o->mean_free_path[i];
+        b->loss[i] = o->loss[i];
+    }
+    b->coat_weight = o->coat_weight;
+    if (o->coat_weight > 0.0f)
+    {
+        b->coat_alpha = o->coat_alpha;
+        b->coat_eta = d->specular_ior;
+        b->coat_row = o->coat_row;
+    }
     if (d->evaluate == TY_CDRF_LOCAL)
     {
         b->kind = TY_BSDF_CDRF_LOCAL;
@@ -53,16 +120,42 @@ void ty_cdrf_prepare(const ty_material* material, const ty_shading_context* cont
     }
 }
 
-float ty_cdrf_spread(const ty_bsdf* b, float curvature)
+void ty_cdrf_set_medium(ty_bsdf* b, float mean_free_path, ty_rgb scale, ty_rgb color, float internal)
+{
+    const float scales[3] = {scale.r, scale.g, scale.b}, colors[3] = {color.r, color.g, color.b};
+    float *l = b->mean_free_path, *a = b->loss;
+    for (int i = 0; i < 3; i++)
+    {
+        l[i] = ty_max(mean_free_path * scales[i], 0.0f);
+        a[i] = ty_cdrf_loss(colors[i], internal);
+    }
+    b->grey = l[0] == l[1] && l[1] == l[2] && a[0] == a[1] && a[1] == a[2];
+    b->sigma_slope = 0.0f;
+}
+
+float ty_cdrf_spread(const ty_bsdf* b, float curvature, int channel)
 {
     curvature = ty_max(curvature, 0.0f);
     if (b->sigma_slope > 0.0f)
         return b->sigma_slope * curvature;
-    float x = b->mean_free_path * curvature;
-    return b->material->cdrf.kernel == TY_CDRF_POISSON ? ty_cdrf_poisson_t(x) : ty_cdrf_gaussian_sigma(x);
+    return ty_spread_table_at(b->material->spread, b->mean_free_path[channel] * curvature, b->loss[channel]);
 }
 
-// Multiplies weight by what a walk left of the light.
+bool ty_cdrf_spreads(const ty_bsdf* b, float curvature, float spread[3])
+{
+    spread[0] = ty_cdrf_spread(b, curvature, 0);
+    if (b->grey)
+        return true;
+    spread[1] = ty_cdrf_spread(b, curvature, 1);
+    spread[2] = ty_cdrf_spread(b, curvature, 2);
+    float low = ty_min(spread[0], ty_min(spread[1], spread[2])), high = ty_max(spread[0], ty_max(spread[1], spread[2]));
+    if (high > 1.1f * low)
+        return false;
+    spread[0] = (spread[0] + spread[1] + spread[2]) * (1.0f / 3.0f);
+    return true;
+}
+
+// Multiplies weight by what a walk left of the light, or by what the way out is worth to each channel.
 static bool trace_interior(ty_bsdf* b, const ty_shading_context* context, const float u[3], ty_rng* extra,
                            ty_rgb* weight, ty_surface_point* exit)
 {
@@ -71,16 +164,19 @@ static bool trace_interior(ty_bsdf* b, const ty_shading_context* context, const 
     if (b->material->model == TY_MODEL_WALK)
         return ty_walk_exit(context, b, u, extra, weight, exit);
     if (b->material->cdrf.evaluate == TY_CDRF_DEPTH)
-        return ty_cdrf_depth_exit(context, &b->point, b->mean_free_path, u, extra, exit);
-    return ty_cdrf_probe_exit(context, b, u, exit);
+        return ty_cdrf_depth_exit(context, b, u, extra, weight, exit);
+    return ty_cdrf_probe_exit(context, b, u, weight, exit);
 }
 
 // The published kernel is not normalised: its integral over pi is part of the weight.
-static float kernel_gain(const ty_bsdf* b, const ty_shading_context* context)
+static ty_rgb kernel_gain(const ty_bsdf* b, const ty_shading_context* context)
 {
     if (b->material->cdrf.kernel != TY_CDRF_GAUSSIAN_PUBLISHED || !context || !context->world)
-        return 1.0f;
-    return ty_cdrf_gaussian_integral(ty_cdrf_spread(b, b->curvature)) * TY_INV_PI;
+        return ty_rgb_grey(1.0f);
+    float gain[3];
+    for (int i = 0; i < 3; i++)
+        gain[i] = ty_cdrf_gaussian_integral(ty_cdrf_spread(b, b->curvature, i)) * TY_INV_PI;
+    return ty_rgb_make(gain[0], gain[1], gain[2]);
 }
 
 // A viewer within a walk's body sees through to where light comes in.
@@ -111,10 +207,13 @@ bool ty_bsdf_take_interior(ty_bsdf* b, const ty_shading_context* context, const 
     if (b->kind == TY_BSDF_SUBSURFACE)
         return ty_surface_take_interior(b, context, u, extra, weight);
     if (b->material->cdrf.evaluate == TY_CDRF_PROBE && context && context->world)
-        b->curvature = ty_mean_curvature(context->world, &b->point);
-    float coat = is_within(b) ? 0.0f : ty_coat_albedo(b, ty_dot(b->wo, b->frame.n));
-    float through = (1.0f - coat) / (1.0f - b->coat_weight * b->coat_row.average);
-    *weight = ty_rgb_scale(b->color, through * kernel_gain(b, context));
+        ty_probe_prepare(context, b);
+    *weight = ty_rgb_mul(b->color, kernel_gain(b, context));
+    if (b->coat_weight > 0.0f)
+    {
+        float coat = is_within(b) ? 0.0f : ty_coat_albedo(b, ty_dot(b->wo, b->frame.n));
+        *weight = ty_rgb_scale(*weight, (1.0f - coat) / (1.0f - b->coat_weight * b->coat_row.average));
+    }
     ty_surface_point exit;
     if (trace_interior(b, context, u, extra, weight, &exit))
         b->point = exit;

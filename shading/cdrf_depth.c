@@ -4,17 +4,27 @@
 #include "curvature_at.h"
 #include "depth_field.h"
 #include "lobes.h"
+#include "material_private.h"
 #include <tsuya/shading/cdrf.h>
 #include <tsuya/shading/sampling.h>
 
 #define MAX_STEPS 64
 
+// The osculating spheroid at x and the space it is in: that of the prototype where the instance is similar to it, else
+// the world's. Lengths are in units of that space.
 typedef struct interior
 {
     const ty_world* world;
     const ty_mesh* mesh;
     uint32_t prototype;
+    ty_vec3 x;       // prototype's space
+    ty_frame frame;  // of the space about the outward normal, as vectors of the prototype's
     float thickness; // D
+    float curvature; // H
+    ty_form form;    // instead of H towards each side, for `directional`
+    bool directional;
+    float unit;     // of the space, m
+    float depth[3]; // by channel
 } interior;
 
 typedef enum crossing
@@ -24,27 +34,11 @@ typedef enum crossing
     CROSSING_ENTRY, // a front face: the ray began outside
 } crossing;
 
-static crossing trace(const interior* in, ty_vec3 p, ty_vec3 w, ty_hit* hit)
+static ty_vec3 triangle_normal(const ty_mesh* mesh, uint32_t triangle)
 {
-    if (!ty_world_intersect_prototype(in->world, in->prototype, p, w, in->thickness, hit))
-        return CROSSING_NONE;
-    const uint32_t* v = in->mesh->triangles[hit->triangle];
-    const ty_vec3* q = in->mesh->positions;
-    ty_vec3 n = ty_cross(ty_sub(q[v[1]], q[v[0]]), ty_sub(q[v[2]], q[v[0]]));
-    return ty_dot(n, w) >= 0.0f ? CROSSING_EXIT : CROSSING_ENTRY;
-}
-
-// Direction through the point at depth d: uniform line, its end chosen as a gambler's ruin between the two crossings of
-// the osculating spheroid (axis D, curvature H at x).
-static ty_vec3 line_direction(ty_frame frame, float thickness, float curvature, float depth, const float u[3])
-{
-    float sine, cosine, z = 2.0f * u[0] - 1.0f, s2 = 1.0f - z * z, s = ty_safe_sqrt(s2);
-    ty_sincos(2.0f * TY_PI * u[1], &sine, &cosine);
-    ty_vec3 w = ty_to_world(frame, ty_vec3_make(s * cosine, s * sine, z));
-    float a = 0.5f * thickness, q = depth / a, m = 1.0f - q; // m of the derivation, over a
-    float A = s2 * curvature / a + z * z / (a * a), B = m * z / a, C = q * (2.0f - q);
-    float S = sqrtf(B * B + A * C), chance = S * a < 1e-12f ? 0.5f : 0.5f * (1.0f + B / S);
-    return u[2] > chance ? ty_neg(w) : w;
+    const uint32_t* v = mesh->triangles[triangle];
+    const ty_vec3* q = mesh->positions;
+    return ty_cross(ty_sub(q[v[1]], q[v[0]]), ty_sub(q[v[2]], q[v[0]]));
 }
 
 static ty_vec3 position_local(const ty_mesh* mesh, const ty_surface_point* x)
@@ -54,46 +48,216 @@ static ty_vec3 position_local(const ty_mesh* mesh, const ty_surface_point* x)
     return ty_mad(ty_mad(p, mesh->positions[v[1]], x->u), mesh->positions[v[2]], x->v);
 }
 
-// The walk's first crossing, starting at depth beneath p with direction w.
-static crossing walk(const interior* in, ty_vec3 p, ty_vec3 w, ty_rng* extra, ty_hit* hit)
+static float interpolate(const ty_mesh* mesh, const ty_surface_point* x, const float* field)
 {
-    for (int i = 0; i < MAX_STEPS; i++)
-    {
-        crossing c = trace(in, p, w, hit);
-        if (c != CROSSING_NONE)
-            return c;
-        p = ty_mad(p, w, in->thickness);
-        float u = ty_rng_float(extra);
-        w = ty_sample_sphere((ty_vec2){u, ty_rng_float(extra)});
-    }
-    return CROSSING_NONE;
+    const uint32_t* v = mesh->triangles[x->triangle];
+    return field[v[0]] * (1.0f - x->u - x->v) + field[v[1]] * x->u + field[v[2]] * x->v;
 }
 
-bool ty_cdrf_depth_exit(const ty_shading_context* context, const ty_surface_point* x, float mean_free_path,
-                        const float u[3], ty_rng* extra, ty_surface_point* exit)
+// --- the space ---
+
+// Whether the map keeps angles, to rounding; its stretch squared.
+static bool is_similarity(const ty_affine* m, float* stretch_sqr)
 {
-    const ty_world* world = context->world;
-    uint32_t prototype = ty_world_prototype(world, x->object, x->instance);
-    const ty_depth_field* field = context->depth_fields ? context->depth_fields[prototype] : NULL;
-    if (!field || mean_free_path <= 0.0f)
-        return false;
+    float xx = ty_dot(m->x, m->x), yy = ty_dot(m->y, m->y), zz = ty_dot(m->z, m->z), least = 1e-4f * xx;
+    *stretch_sqr = (xx + yy + zz) * (1.0f / 3.0f);
+    return fabsf(yy - xx) < least && fabsf(zz - xx) < least && fabsf(ty_dot(m->x, m->y)) < least &&
+           fabsf(ty_dot(m->y, m->z)) < least && fabsf(ty_dot(m->z, m->x)) < least;
+}
+
+// The spheroid under a map that keeps no angles is an ellipsoid: its chord along the new normal, and its curvature
+// there. n is unit, of the prototype; closer = |M^-T n|^-1.
+static void deform(interior* in, ty_vec3 n, ty_form form, float closer)
+{
+    float a = 0.5f * in->thickness, straight = ty_dot(in->frame.n, n), vt, vb;
+    ty_frame f = ty_frame_from_normal(n);
+    vt = ty_dot(in->frame.n, f.t);
+    vb = ty_dot(in->frame.n, f.b);
+    float bent = ty_max(form.tt * vt * vt + 2.0f * form.tb * vt * vb + form.bb * vb * vb, 0.0f);
+    in->thickness = 2.0f * straight / (straight * straight / a + bent);
+    // The form at tangents of the world, which as vectors of the prototype's space lie in its tangent plane.
+    float tt = ty_dot(in->frame.t, f.t), tb = ty_dot(in->frame.t, f.b), bt = ty_dot(in->frame.b, f.t),
+          bb = ty_dot(in->frame.b, f.b);
+    in->form = (ty_form){closer * (form.tt * tt * tt + 2.0f * form.tb * tt * tb + form.bb * tb * tb),
+                         closer * (form.tt * tt * bt + form.tb * (tt * bb + tb * bt) + form.bb * tb * bb),
+                         closer * (form.tt * bt * bt + 2.0f * form.tb * bt * bb + form.bb * bb * bb)};
+    in->curvature = ty_max(ty_form_mean(in->form), 0.0f);
+}
+
+// The form as it is, with the mean curvature of the field, which is smoothed and not negative.
+static ty_form smoothed_form(const interior* in, const ty_surface_point* x, ty_vec3 n)
+{
+    ty_frame f = ty_frame_from_normal(n);
+    ty_form form = ty_form_local(in->mesh, x, f.t, f.b);
+    float change = in->curvature - ty_form_mean(form);
+    return (ty_form){form.tt + change, form.tb, form.bb + change};
+}
+
+static void interior_begin(const ty_bsdf* b, const ty_world* world, const ty_depth_field* field, uint32_t prototype,
+                           interior* in)
+{
+    const ty_surface_point* x = &b->point;
     ty_affine to_world = ty_world_to_world(world, x->object, x->instance, x->time);
-    interior in = {world, ty_world_prototype_mesh(world, prototype), prototype,
-                   ty_world_interpolate(world, x, field->depth)};
-    float curvature = ty_world_interpolate(world, x, field->curvature), k = 0.5f * curvature + 1.0f / in.thickness;
-    float free_path = mean_free_path / ty_instance_scale(&to_world);
-    float depth = ty_min((1.0f - ty_exp(-ty_cdrf_poisson_t(k * free_path))) / k, 0.95f * in.thickness);
-    ty_vec3 p = position_local(in.mesh, x), n = ty_normalize(ty_map_transpose(&to_world, x->ns));
-    // Too shallow for the coordinates to tell p from x: the light leaves where it entered.
-    if (depth < 1e-6f * (fabsf(p.x) + fabsf(p.y) + fabsf(p.z)))
-        return false;
-    ty_vec3 w = line_direction(ty_frame_from_normal(n), in.thickness, curvature, depth, u);
+    in->world = world;
+    in->prototype = prototype;
+    in->mesh = ty_world_prototype_mesh(world, prototype);
+    in->x = position_local(in->mesh, x);
+    in->thickness = interpolate(in->mesh, x, field->depth);
+    in->curvature = interpolate(in->mesh, x, field->curvature);
+    int which = b->material->cdrf.curvature;
+    in->directional = which == TY_CDRF_CURVATURE_DIRECTIONAL;
+    bool formed = in->directional || which == TY_CDRF_CURVATURE_MAXIMAL;
+    float stretch_sqr;
+    ty_vec3 n = ty_map_transpose(&to_world, x->ns);
+    if (is_similarity(&to_world, &stretch_sqr))
+    {
+        in->unit = sqrtf(stretch_sqr);
+        n = ty_normalize(n);
+        in->frame = ty_frame_from_normal(n);
+        if (formed)
+            in->form = smoothed_form(in, x, n);
+    }
+    else
+    {
+        float closer = ty_length(n);
+        ty_affine to_local = ty_world_to_local(world, x->object, x->instance, x->time);
+        ty_frame f = ty_frame_from_normal(x->ns);
+        n = ty_mul(n, 1.0f / closer);
+        in->unit = 1.0f;
+        in->frame =
+            (ty_frame){ty_map_vector(&to_local, f.t), ty_map_vector(&to_local, f.b), ty_map_vector(&to_local, f.n)};
+        deform(in, n, smoothed_form(in, x, n), closer);
+    }
+    if (which == TY_CDRF_CURVATURE_MAXIMAL)
+        in->curvature = ty_max(ty_form_maximum(in->form), 0.0f);
+}
+
+// Diffusion depth by channel. False = one for all.
+static bool find_depths(const ty_bsdf* b, interior* in)
+{
+    float k = 0.5f * in->curvature + 1.0f / in->thickness, drop[3];
+    bool alike = ty_cdrf_spreads(b, k / in->unit, drop);
+    for (int i = 0; i < (alike ? 1 : 3); i++)
+        in->depth[i] = ty_min(drop[i] / k, 0.95f * in->thickness);
+    return !alike;
+}
+
+// --- the line ---
+
+// Chance of the end towards w of the line through the point at a depth, a gambler's ruin between its crossings of the
+// spheroid, times 2.
+static float end_chance(const interior* in, ty_vec3 w, float depth)
+{
+    float z = w.z, s2 = 1.0f - z * z, h = in->curvature;
+    if (in->directional)
+        h = ty_max(ty_form_towards(in->form, w.x, w.y), 0.0f);
+    float per_a = 2.0f / in->thickness, q = depth * per_a, m = 1.0f - q; // m of the derivation, over a
+    float A = s2 * h * per_a + z * z * per_a * per_a, B = m * z * per_a, C = q * (2.0f - q);
+    float S = sqrtf(B * B + A * C);
+    return S < 1e-12f * per_a ? 1.0f : 1.0f + B / S;
+}
+
+static crossing trace(const interior* in, ty_vec3 p, ty_vec3 w, ty_hit* hit)
+{
+    if (!ty_world_intersect_prototype(in->world, in->prototype, p, w, in->thickness, hit))
+        return CROSSING_NONE;
+    return ty_dot(triangle_normal(in->mesh, hit->triangle), w) >= 0.0f ? CROSSING_EXIT : CROSSING_ENTRY;
+}
+
+// The walk goes on where nothing was met within D.
+static crossing walk_on(const interior* in, ty_vec3 p, ty_vec3 w, ty_rng* extra, ty_hit* hit)
+{
+    crossing c = CROSSING_NONE;
+    for (int i = 1; i < MAX_STEPS && c == CROSSING_NONE; i++)
+    {
+        p = ty_mad(p, w, in->thickness);
+        float u = ty_rng_float(extra);
+        w = ty_to_world(in->frame, ty_sample_sphere((ty_vec2){u, ty_rng_float(extra)}));
+        c = trace(in, p, w, hit);
+    }
+    return c;
+}
+
+// --- channels ---
+
+static bool sees(const interior* in, ty_vec3 p, ty_vec3 way)
+{
     ty_hit hit;
-    if (walk(&in, ty_mad(p, n, -depth), w, extra, &hit) != CROSSING_EXIT)
+    return !ty_world_intersect_prototype(in->world, in->prototype, p, way, 0.999f, &hit);
+}
+
+// What an exit that channel `chosen` found at once is worth to each: its density for the channel over the mean of all,
+// with (1 + B / S) cos / rho^2 for a point at distance rho within D that sees the exit. exit: from x, in the frame.
+static ty_rgb channel_weights(const interior* in, ty_vec3 exit, ty_vec3 normal, int chosen, bool convex)
+{
+    float p[3], sum = 0.0f;
+    for (int i = 0; i < 3; i++)
+    {
+        ty_vec3 v = ty_vec3_make(exit.x, exit.y, exit.z + in->depth[i]);
+        float rho = ty_length(v), cosine = ty_dot(v, normal);
+        p[i] = 0.0f;
+        if (i == chosen || (rho < in->thickness && cosine > 0.0f))
+            p[i] = end_chance(in, ty_mul(v, 1.0f / rho), in->depth[i]) * fabsf(cosine) / (rho * rho * rho);
+        if (i != chosen && !convex && p[i] > 0.0f &&
+            !sees(in, ty_mad(in->x, in->frame.n, -in->depth[i]), ty_to_world(in->frame, v)))
+            p[i] = 0.0f;
+        sum += p[i];
+    }
+    return sum > 0.0f ? ty_rgb_scale(ty_rgb_make(p[0], p[1], p[2]), 3.0f / sum) : ty_rgb_grey(1.0f);
+}
+
+static ty_rgb one_channel(int i)
+{
+    return ty_rgb_make(i == 0 ? 3.0f : 0.0f, i == 1 ? 3.0f : 0.0f, i == 2 ? 3.0f : 0.0f);
+}
+
+// A random end of a line; u is as good as new where a channel was chosen by it.
+static ty_vec3 line_direction(const interior* in, float depth, const float u[3], float end)
+{
+    float sine, cosine, z = 2.0f * u[0] - 1.0f, s = ty_safe_sqrt(1.0f - z * z);
+    ty_sincos(2.0f * TY_PI * u[1], &sine, &cosine);
+    ty_vec3 w = {s * cosine, s * sine, z};
+    return 2.0f * end > end_chance(in, w, depth) ? ty_neg(w) : w;
+}
+
+bool ty_cdrf_depth_exit(const ty_shading_context* context, const ty_bsdf* b, const float u[3], ty_rng* extra,
+                        ty_rgb* weight, ty_surface_point* exit)
+{
+    const ty_surface_point* x = &b->point;
+    uint32_t prototype = ty_world_prototype(context->world, x->object, x->instance);
+    const ty_depth_field* field = context->depth_fields ? context->depth_fields[prototype] : NULL;
+    if (!field)
+        return false;
+    interior in;
+    interior_begin(b, context->world, field, prototype, &in);
+    bool coloured = find_depths(b, &in);
+    int chosen = coloured ? (int)ty_min(u[2] * 3.0f, 2.5f) : 0;
+    float depth = in.depth[chosen], end = coloured ? u[2] * 3.0f - (float)chosen : u[2];
+    ty_rgb alone = coloured ? one_channel(chosen) : ty_rgb_grey(1.0f), factor = alone;
+    ty_vec3 start = ty_mad(in.x, in.frame.n, -depth), w = line_direction(&in, depth, u, end);
+    ty_vec3 way = ty_to_world(in.frame, w);
+    ty_hit hit;
+    crossing c = CROSSING_ENTRY;
+    // Too shallow for the coordinates to tell p from x: the light leaves where it entered.
+    if (depth * ty_length(in.frame.n) >= 1e-6f * (fabsf(start.x) + fabsf(start.y) + fabsf(start.z)) && depth > 0.0f)
+    {
+        c = trace(&in, start, way, &hit);
+        if (c == CROSSING_NONE)
+            c = walk_on(&in, start, way, extra, &hit);
+        else if (c == CROSSING_EXIT && coloured)
+        {
+            ty_vec3 n = triangle_normal(in.mesh, hit.triangle), v = ty_mul(w, hit.t);
+            v.z -= depth;
+            n = ty_vec3_make(ty_dot(n, in.frame.t), ty_dot(n, in.frame.b), ty_dot(n, in.frame.n));
+            factor = channel_weights(&in, v, n, chosen, x->convex);
+        }
+    }
+    *weight = ty_rgb_mul(*weight, factor);
+    if (c != CROSSING_EXIT)
         return false;
     hit.object = x->object;
     hit.instance = x->instance;
     hit.time = x->time;
-    ty_world_surface(world, &hit, exit);
+    ty_world_surface(context->world, &hit, exit);
     return true;
 }

@@ -78,9 +78,9 @@ void ty_poisson_table_destroy(ty_poisson_table* table)
     ty_free(table);
 }
 
-float ty_poisson_table_at(const ty_poisson_table* table, float gain, float cos_theta)
+float ty_poisson_table_at(const ty_poisson_table* table, float drop, float cos_theta)
 {
-    float y = ty_safe_sqrt(1.0f - ty_min(gain, 1.0f)) * (GAIN_NODES - 1);
+    float y = sqrtf(ty_clamp(drop, 0.0f, 1.0f)) * (GAIN_NODES - 1);
     float s = copysignf(sqrtf(ty_min(fabsf(cos_theta), 1.0f)), cos_theta);
     float x = (s + 1.0f) * (0.5f * (COSINE_NODES - 1));
     int j = (int)y < GAIN_NODES - 1 ? (int)y : GAIN_NODES - 2,
@@ -151,12 +151,17 @@ float ty_cdrf_gaussian(float sigma, float theta)
     return ty_cdrf_gaussian_published(sigma, theta) * (TY_PI / ty_cdrf_gaussian_integral(sigma));
 }
 
-float ty_cdrf_share_below(int kernel, float spread)
+// Only l = 0 and 1 differ between the hemispheres: the even l > 0 integrate to zero over each, the odd l > 1 are
+// absent.
+float ty_cdrf_spread_below(int kernel, float spread)
 {
-    // Only l = 0 and 1 differ between the hemispheres: the even l > 0 integrate to zero over each, the odd l > 1 are
-    // absent.
     if (kernel == TY_CDRF_POISSON)
-        return 0.5f * (1.0f - ty_exp(-ty_max(spread, 0.0f)));
+        return 0.5f * spread;
     float mean = TY_PI * ty_exp(-0.5f * spread * spread) / ty_cdrf_gaussian_integral(spread);
     return ty_clamp(0.5f * (1.0f - mean), 0.0f, 0.5f);
+}
+
+float ty_cdrf_share_below(int kernel, float spread)
+{
+    return ty_cdrf_spread_below(kernel, kernel == TY_CDRF_POISSON ? 1.0f - ty_exp(-ty_max(spread, 0.0f)) : spread);
 }

@@ -29,14 +29,22 @@ bool ty_local_sample(const ty_bsdf* bsdf, ty_vec3 wo, float u_lobe, ty_vec2 u, t
 float ty_local_curvature(const ty_bsdf* bsdf, ty_vec3 wi); // 1/m, in the tangential direction of wi, >= 0
 
 ty_rgb ty_cdrf_albedo(const ty_bsdf* bsdf);
-float ty_cdrf_spread(const ty_bsdf* bsdf, float curvature); // t or sigma
+// Mean free path times scale by channel, and the loss that gives the colour under a boundary that reflects `internal`
+// of diffuse light back. The material must have its table of spreads.
+void ty_cdrf_set_medium(ty_bsdf* bsdf, float mean_free_path, ty_rgb scale, ty_rgb color, float internal);
+float ty_cdrf_spread(const ty_bsdf* bsdf, float curvature, int channel); // 1 - e^-t or sigma
+// By channel. True = so alike (within a twentieth of their mean, which spread[0] then is) that no eye can part them.
+bool ty_cdrf_spreads(const ty_bsdf* bsdf, float curvature, float spread[3]);
 
-// Where a walk that enters at x leaves. u: three numbers. Returns false where x itself is the answer.
-bool ty_cdrf_depth_exit(const ty_shading_context* context, const ty_surface_point* x, float mean_free_path,
-                        const float u[3], ty_rng* extra, ty_surface_point* exit);
+// Where a walk that enters at the point leaves. u: three numbers. Returns false where the point itself is the answer.
+// Channels whose light spreads alike share one way; else one is chosen and *weight is multiplied by what that is worth
+// to each.
+bool ty_cdrf_depth_exit(const ty_shading_context* context, const ty_bsdf* bsdf, const float u[3], ty_rng* extra,
+                        ty_rgb* weight, ty_surface_point* exit);
 // The same by a random walk. Multiplies weight by what is left of the light, and notes in bsdf how the walk went.
 bool ty_walk_exit(const ty_shading_context* context, ty_bsdf* bsdf, const float u[3], ty_rng* extra, ty_rgb* weight,
                   ty_surface_point* exit);
-ty_rgb ty_walk_reflectance(const ty_scattering* matter); // of a thick body
-bool ty_cdrf_probe_exit(const ty_shading_context* context, const ty_bsdf* bsdf, const float u[3],
+ty_rgb ty_walk_reflectance(const ty_scattering* matter);                 // of a thick body
+void ty_probe_prepare(const ty_shading_context* context, ty_bsdf* bsdf); // curvature
+bool ty_cdrf_probe_exit(const ty_shading_context* context, const ty_bsdf* bsdf, const float u[3], ty_rgb* weight,
                         ty_surface_point* exit);

@@ -96,6 +96,8 @@ ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** ou
     m->emissive = !ty_input_is_zero(&def->emission_luminance) && !ty_input_is_zero(&def->emission_color);
     m->traits = surface_traits(def);
     ty_surface_make_tables(m);
+    if (m->body && def->subsurface_evaluate != TY_SUBSURFACE_WALK)
+        m->spread = ty_spread_table_create(TY_CDRF_POISSON);
     *out = m;
     return TY_OK;
 }
@@ -130,8 +132,11 @@ ty_status ty_material_create_cdrf(const ty_cdrf_def* def, ty_material** out, ty_
     if (m->optics_are_constant)
         m->optics = ty_moisture_law_at(&def->calibration, ty_moisture_at(&m->cdrf.moisture, NULL, NULL));
     m->bent = has_map(&def->normal, &def->bump);
-    if (def->evaluate == TY_CDRF_LOCAL && def->kernel == TY_CDRF_POISSON)
-        m->poisson = ty_poisson_table_create();
+    m->cdrf_is_constant = m->optics_are_constant && ty_input_is_constant(&def->color) &&
+                          ty_input_is_constant(&def->mean_free_path) &&
+                          ty_input_is_constant(&def->mean_free_path_scale) &&
+                          ty_input_is_constant(&def->specular_weight) && ty_input_is_constant(&def->specular_roughness);
+    ty_cdrf_begin(m);
     *out = m;
     return TY_OK;
 }
@@ -230,6 +235,7 @@ void ty_material_destroy(ty_material* material)
     ty_loss_table_destroy(material->conductor);
     ty_loss_table_destroy(material->dielectric);
     ty_poisson_table_destroy(material->poisson);
+    ty_spread_table_destroy(material->spread);
     ty_free(material);
 }
 
@@ -315,24 +321,29 @@ static void prepare_matte(const ty_material* material, const ty_shading_context*
         out->emission = ty_material_emission(material, context, point);
 }
 
+static void prepare_cdrf(const ty_material* material, const ty_shading_context* context, const ty_surface_point* point,
+                         ty_vec3 wo, ty_bsdf* out)
+{
+    if (point != &out->point)
+        out->point = *point;
+    out->material = material;
+    out->wo = wo;
+    out->emission = ty_rgb_grey(0.0f);
+    ty_shading_frame_prepare(material, context, out);
+    ty_cdrf_prepare(material, context, out);
+}
+
 static void prepare_layers(const ty_material* material, const ty_shading_context* context,
                            const ty_surface_point* point, ty_vec3 wo, float outside, ty_bsdf* out)
 {
     *out = (ty_bsdf){.material = material, .point = *point, .wo = wo, .outside = outside};
     ty_shading_frame_prepare(material, context, out);
-    switch (material->model)
-    {
-    case TY_MODEL_SURFACE:
+    if (material->model == TY_MODEL_SURFACE)
         ty_surface_prepare(material, context, out);
-        break;
-    case TY_MODEL_CDRF:
-        ty_cdrf_prepare(material, context, out);
-        break;
-    case TY_MODEL_WALK:
-        (material->walk.boundary == TY_WALK_DIELECTRIC ? ty_walk_prepare_boundary : ty_walk_prepare)(material, context,
-                                                                                                     out);
-        break;
-    }
+    else if (material->walk.boundary == TY_WALK_DIELECTRIC)
+        ty_walk_prepare_boundary(material, context, out);
+    else
+        ty_walk_prepare(material, context, out);
 }
 
 void ty_material_prepare_within(const ty_material* material, const ty_shading_context* context,
@@ -340,6 +351,8 @@ void ty_material_prepare_within(const ty_material* material, const ty_shading_co
 {
     if (material->matte)
         prepare_matte(material, context, point, wo, out);
+    else if (material->model == TY_MODEL_CDRF)
+        prepare_cdrf(material, context, point, wo, out);
     else
         prepare_layers(material, context, point, wo, outside, out);
 }

@@ -49,6 +49,7 @@ ty_cdrf_def ty_cdrf_def_default(void)
         .moisture = ty_moisture_inputs_default(),
         .cooked = -1.0f,
         .mean_free_path = ty_input_scalar(-1e-3f),
+        .mean_free_path_scale = ty_input_scalar(1.0f),
         .kernel = TY_CDRF_POISSON,
         .evaluate = TY_CDRF_DEPTH,
         .specular_weight = ty_input_scalar(1.0f),
@@ -157,6 +158,7 @@ static const ty_param surface_rows[] = {
 #undef DEF
 
 static const char* const kernel_names[] = {"poisson", "gaussian", "gaussian_published", NULL};
+static const char* const curvature_names[] = {"automatic", "mean", "directional", "maximal", NULL};
 static const char* const evaluate_names[] = {"depth", "probe", "local", NULL};
 
 #define DEF ty_cdrf_def
@@ -170,6 +172,7 @@ static const ty_param cdrf_rows[] = {
      .help = "water per total mass: rice is .145 raw, .31 soaked, .62 cooked; or how it got there"},
     ROW(cooked, NUMBER, "", -1, 1, "degree of gelatinisation, unless moisture says it; negative: follows from it"),
     ROW(mean_free_path, SCALAR, "mm", -1, 1000, "transport mean free path; negative: from moisture"),
+    ROW(mean_free_path_scale, COLOR, "", 0, 1000, "its factor per channel: red goes farther in skin and fruit"),
     {.name = "kernel",
      .type = TY_PARAM_ENUM,
      .unit = "",
@@ -182,6 +185,12 @@ static const ty_param cdrf_rows[] = {
      .choices = evaluate_names,
      .offset = offsetof(ty_cdrf_def, evaluate),
      .help = "depth: a short ray inside; probe: from the osculating sphere; local: no ray"},
+    {.name = "curvature",
+     .type = TY_PARAM_ENUM,
+     .unit = "",
+     .choices = curvature_names,
+     .offset = offsetof(ty_cdrf_def, curvature),
+     .help = "which of a point's curvatures counts; automatic: directional for local, mean for the others"},
     ROW(specular_weight, SCALAR, "", 0, 1, "strength of the reflection at the surface; less where it is dry"),
     ROW(specular_roughness, SCALAR, "", -1, 1, "roughness of the reflection; negative: from moisture"),
     ROW(specular_ior, NUMBER, "", 1, 3, "refractive index of the surface"),
@@ -255,7 +264,8 @@ static int fill_walk_rows(ty_param* rows)
     int count = 0;
     for (int i = 0; i < TY_PARAM_COUNT(cdrf_rows); ++i)
     {
-        if (strcmp(cdrf_rows[i].name, "kernel") == 0 || strcmp(cdrf_rows[i].name, "evaluate") == 0)
+        if (strcmp(cdrf_rows[i].name, "kernel") == 0 || strcmp(cdrf_rows[i].name, "evaluate") == 0 ||
+            strcmp(cdrf_rows[i].name, "curvature") == 0)
             continue;
         rows[count] = cdrf_rows[i];
         rows[count++].offset += offsetof(ty_walk_def, common);

@@ -13,6 +13,17 @@ typedef enum ty_material_model
     TY_MODEL_WALK,
 } ty_material_model;
 
+// What the inputs of `cdrf` come to at a point.
+typedef struct ty_cdrf_optics
+{
+    ty_rgb color;
+    float mean_free_path[3], loss[3]; // as in ty_bsdf
+    bool grey;
+    float sigma_slope;
+    float coat_weight, coat_alpha;
+    ty_albedo_row coat_row;
+} ty_cdrf_optics;
+
 struct ty_material
 {
     ty_material_model model;
@@ -38,6 +49,9 @@ struct ty_material
     ty_poisson_table* poisson; // for `local` with the Poisson kernel
     bool optics_are_constant;  // of `cdrf`: the moisture is, and then they are these:
     ty_moisture_optics optics;
+    ty_spread_table* spread; // of `cdrf`
+    bool cdrf_is_constant;   // nor does any other input of `cdrf`, and then what they come to is this:
+    ty_cdrf_optics cdrf_optics;
 };
 
 extern const ty_param_table ty_moisture_table, ty_moisture_law_table;
@@ -75,6 +89,9 @@ ty_scattering ty_walk_matter(ty_rgb color, float radius, ty_rgb scale, float ani
 
 // out holds point, frame, wo, entering and bent already; all else is zero.
 void ty_surface_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
+
+// `cdrf` sets what its kinds read and leaves the rest as it is.
+void ty_cdrf_begin(ty_material* material); // tables and constants; inputs must be in place
 void ty_cdrf_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
 void ty_walk_prepare_boundary(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);
 void ty_walk_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);

@@ -104,7 +104,7 @@ static void prepare_body(const ty_surface_def* s, const ty_shading_context* cont
     if (s->subsurface_evaluate == TY_SUBSURFACE_WALK)
         b->matter = ty_walk_matter(color, radius, scale, g);
     else
-        b->mean_free_paths = ty_rgb_scale(scale, radius / (1.0f - g));
+        ty_cdrf_set_medium(b, radius / (1.0f - g), scale, color, 0.0f);
 }
 
 static void prepare_transmission(const ty_surface_def* s, const ty_shading_context* context, ty_bsdf* b)
@@ -372,18 +372,6 @@ ty_rgb ty_surface_albedo(const ty_bsdf* b)
     return b->kind == TY_BSDF_SUBSURFACE ? ty_rgb_add(sum, body_albedo(b, mu)) : sum;
 }
 
-// One channel is followed for all, where they differ: which, by chance.
-static ty_rgb follow_channel(ty_bsdf* b, ty_rng* extra)
-{
-    ty_rgb l = b->mean_free_paths;
-    b->mean_free_path = l.g;
-    if (l.r == l.g && l.g == l.b)
-        return ty_rgb_grey(1.0f);
-    float u = 3.0f * ty_rng_float(extra);
-    b->mean_free_path = u < 1.0f ? l.r : u < 2.0f ? l.g : l.b;
-    return (ty_rgb){u < 1.0f ? 3.0f : 0.0f, u >= 1.0f && u < 2.0f ? 3.0f : 0.0f, u >= 2.0f ? 3.0f : 0.0f};
-}
-
 bool ty_surface_take_interior(ty_bsdf* b, const ty_shading_context* context, const float u[3], ty_rng* extra,
                               ty_rgb* weight)
 {
@@ -405,11 +393,7 @@ bool ty_surface_take_interior(ty_bsdf* b, const ty_shading_context* context, con
     else
     {
         *weight = ty_rgb_mul(*weight, b->body_color);
-        if (traced)
-        {
-            *weight = ty_rgb_mul(*weight, follow_channel(b, extra));
-            left = ty_cdrf_depth_exit(context, &b->point, b->mean_free_path, u, extra, &exit);
-        }
+        left = traced && ty_cdrf_depth_exit(context, b, u, extra, weight, &exit);
     }
     if (left)
         b->point = exit;

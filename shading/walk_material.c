@@ -86,10 +86,12 @@ void ty_walk_prepare(const ty_material* material, const ty_shading_context* cont
                                       ty_input_color(&d->absorption, context, p), g);
     else if (ty_walk_is_given(&d->subsurface_color))
         b->matter = from_color(material, context, p);
-    else if (b->mean_free_path > 0.0f)
+    else if (b->mean_free_path[0] > 0.0f)
     {
         // White within; the colour is what the body keeps of the light, as for `cdrf`.
-        b->matter = (ty_scattering){ty_rgb_grey(1.0f / (b->mean_free_path * (1.0f - g))), ty_rgb_grey(1.0f), g};
+        const float* l = b->mean_free_path;
+        ty_rgb extinction = ty_rgb_make(1.0f / l[0], 1.0f / ty_max(l[1], 1e-9f), 1.0f / ty_max(l[2], 1e-9f));
+        b->matter = (ty_scattering){ty_rgb_scale(extinction, 1.0f / (1.0f - g)), ty_rgb_grey(1.0f), g};
         return;
     }
     else

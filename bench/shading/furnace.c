@@ -105,7 +105,7 @@ static double path_of_sigma(double sigma)
     for (int i = 0; i < 60; i++)
     {
         float middle = 0.5f * (low + high);
-        if ((double)ty_cdrf_gaussian_sigma(middle) < sigma)
+        if ((double)ty_cdrf_gaussian_sigma(middle, 0) < sigma)
             low = middle;
         else
             high = middle;

@@ -74,7 +74,7 @@ static void coats_reflect_a_lit_floor(void** state)
 static void published_kernel_gains(void** state)
 {
     (void)state;
-    float sigma = ty_cdrf_gaussian_sigma(7.5f / 30.0f);
+    float sigma = ty_cdrf_gaussian_sigma(7.5f / 30.0f, 0);
     double expected = (double)ty_cdrf_gaussian_integral(sigma) / 3.14159265358979;
     double local = gain("model: cdrf, color: 1, specular_weight: 0, mean_free_path: 7.5, evaluate: local, kernel: "
                         "gaussian_published",

@@ -35,7 +35,7 @@ static float length_at(uint32_t instance)
     ty_surface_point p = {.ng = {0, 0, 1}, .ns = {0, 0, 1}, .instance = instance};
     ty_bsdf b;
     ty_material_prepare(fixture_scene->materials[0], &fixture_scene->shading, &p, ty_vec3_make(0, 0, 1), &b);
-    return b.mean_free_path * 1e3f;
+    return b.mean_free_path[0] * 1e3f;
 }
 
 static void forms(void** state)

@@ -74,7 +74,7 @@ static void test_exits_follow_the_poisson_kernel(void** state)
         {
             // The mesh's own roundness is off by its facets: a coarser kernel cannot see it.
             ty_cdrf_def d = white_cdrf(e, TY_CDRF_POISSON, x[i] * radius);
-            check_exits(&d, ty_cdrf_poisson_t(x[i]));
+            check_exits(&d, ty_cdrf_poisson_t(x[i], 0));
         }
 }
 
@@ -97,7 +97,7 @@ static void test_terminator(void** state)
         int n = e == TY_CDRF_LOCAL ? 1 : 300000;
         assert_near(at_angle(&ball, m, 90, n), 0.148, 0.003);
         assert_near(at_angle(&ball, m, 180, n), 0.0284, 0.002);
-        assert_near(at_angle(&ball, m, 0, n), (double)ty_cdrf_poisson(ty_cdrf_poisson_t(0.25f), 1), 0.003);
+        assert_near(at_angle(&ball, m, 0, n), (double)ty_cdrf_poisson(ty_cdrf_poisson_t(0.25f, 0), 1), 0.003);
         ty_material_destroy(m);
     }
     ty_cdrf_def d = white_cdrf(TY_CDRF_LOCAL, TY_CDRF_GAUSSIAN, radius / 4);
@@ -122,8 +122,8 @@ static void test_local_follows_the_closed_forms(void** state)
             ty_material* m = cdrf(&d);
             for (int a = 0; a <= 18; a++)
             {
-                float theta = (float)(a * M_PI / 18), s = ty_cdrf_gaussian_sigma(x[i]);
-                float expected = k == TY_CDRF_POISSON    ? ty_cdrf_poisson(ty_cdrf_poisson_t(x[i]), ty_cos(theta))
+                float theta = (float)(a * M_PI / 18), s = ty_cdrf_gaussian_sigma(x[i], 0);
+                float expected = k == TY_CDRF_POISSON    ? ty_cdrf_poisson(ty_cdrf_poisson_t(x[i], 0), ty_cos(theta))
                                  : k == TY_CDRF_GAUSSIAN ? ty_cdrf_gaussian(s, theta)
                                                          : ty_cdrf_gaussian_published(s, theta);
                 assert_near(at_angle(&ball, m, a * 10.0, 1), (double)expected, 2e-3);
@@ -150,7 +150,7 @@ static float path_of_sigma(float sigma)
     for (int i = 0; i < 60; i++)
     {
         float middle = 0.5f * (low + high);
-        if (ty_cdrf_gaussian_sigma(middle) < sigma)
+        if (ty_cdrf_gaussian_sigma(middle, 0) < sigma)
             low = middle;
         else
             high = middle;

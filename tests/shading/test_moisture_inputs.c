@@ -136,8 +136,8 @@ static void test_cooked_beside_moisture(void** state)
         ty_material_prepare(m, NULL, &p, ty_vec3_make(0, 0, 1), &b[i]);
         ty_material_destroy(m);
     }
-    assert_near(b[0].mean_free_path, sqrt(.10 * .3753) * 1e-3, 1e-6);
-    assert_near(b[0].mean_free_path, b[1].mean_free_path, 0);
+    assert_near(b[0].mean_free_path[0], sqrt(.10 * .3753) * 1e-3, 1e-6);
+    assert_near(b[0].mean_free_path[0], b[1].mean_free_path[0], 0);
 }
 
 // Angle from half of the lit pole's light to a tenth of it.
@@ -164,7 +164,7 @@ static void test_terminator_grows_with_uptake(void** state)
         float w = ty_moisture_wet_basis((float)i / 100);
         ty_moisture_optics o = ty_moisture_optics_make((ty_moisture){w, 1});
         assert_near(o.gaussian_sigma, 1e-3 * exp(0.34 + 0.52 * log((double)w)), 1e-9);
-        double width[2] = {terminator_width(false, ty_cdrf_poisson_t(o.mean_free_path / 1.2e-3f)),
+        double width[2] = {terminator_width(false, ty_cdrf_poisson_t(o.mean_free_path / 1.2e-3f, 0)),
                            terminator_width(true, o.gaussian_sigma / 1.2e-3f)};
         for (int k = 0; k < 2; k++)
         {

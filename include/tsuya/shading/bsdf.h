@@ -97,16 +97,17 @@ typedef struct ty_bsdf
     ty_albedo_row coat_under_fuzz, base_under_coat, base_under_fuzz;
 
     // subsurface, and surfaces that come of it
-    float body;             // share of what is neither metal nor clear; 0 = no body
-    float surface_chance;   // of going on with the rest of the surface
-    ty_rgb body_color;      // with the coat's darkening; grey of a walk, whose matter has the colour
-    ty_rgb mean_free_paths; // m, of the channels, transport
+    float body;           // share of what is neither metal nor clear; 0 = no body
+    float surface_chance; // of going on with the rest of the surface
+    ty_rgb body_color;    // with the coat's darkening; grey of a walk, whose matter has the colour
 
     // cdrf
-    float mean_free_path; // m, world
-    float sigma_slope;    // m; > 0: sigma = sigma_slope * curvature instead of the white-material law
-    float curvature;      // 1/m, mean curvature in world units
-    float second_form[3]; // local: II(t,t), II(t,b), II(b,b) in the frame, 1/m, convex positive
+    float mean_free_path[3]; // m, world, by channel
+    float loss[3];           // 1 - single-scattering albedo, by channel
+    bool grey;               // the channels are alike in both
+    float sigma_slope;       // m; > 0: sigma = sigma_slope * curvature instead of the law of mean free path and loss
+    float curvature;         // 1/m, world; for local where the direction of light does not matter
+    float second_form[3];    // probe, local: II(t,t), II(t,b), II(b,b) in the frame, 1/m, convex positive
 
     // walk: mean_free_path 0 = light leaves where it entered
     ty_scattering matter;

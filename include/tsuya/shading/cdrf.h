@@ -4,11 +4,14 @@
 #include <tsuya/base/math.h>
 #include <tsuya/base/moisture.h>
 
-// Poisson kernel parameter t for a white medium: table in ln x of x = curvature * mean free path (Monte Carlo), linear
-// in the log; extended by (4/3) x below and by its last slope above.
-float ty_cdrf_poisson_t(float x);
-// Normalised Gaussian's sigma for a white medium, likewise.
-float ty_cdrf_gaussian_sigma(float x);
+// Poisson kernel parameter t against x = curvature * mean free path and loss = 1 - single-scattering albedo: table in
+// their logarithms (random walks in spheres), linear in x below it and by its last slope above.
+float ty_cdrf_poisson_t(float x, float loss);
+// Normalised Gaussian's sigma, likewise, by the first slope below.
+float ty_cdrf_gaussian_sigma(float x, float loss);
+// 1 - single-scattering albedo of matter of which a thick piece gives back the share `color` of the light that entered
+// it. internal: share of the diffuse light within that the boundary reflects back, 0 = none.
+float ty_cdrf_loss(float color, float internal);
 
 // E(theta) / E(lit Lambert point at 0): response of a sphere to one directional light at cos_theta.
 float ty_cdrf_poisson(float t, float cos_theta);            // sum a_l e^(-l t) P_l, integral pi

@@ -105,16 +105,26 @@ typedef enum ty_cdrf_evaluate
     TY_CDRF_LOCAL,
 } ty_cdrf_evaluate;
 
+typedef enum ty_cdrf_curvature
+{
+    TY_CDRF_CURVATURE_AUTOMATIC,   // directional for `local`, mean for the others
+    TY_CDRF_CURVATURE_MEAN,        // (k1 + k2) / 2
+    TY_CDRF_CURVATURE_DIRECTIONAL, // normal curvature towards the light (local) or the way out (depth, probe)
+    TY_CDRF_CURVATURE_MAXIMAL,     // max(k1, k2)
+} ty_cdrf_curvature;
+
 typedef struct ty_cdrf_def
 {
-    ty_input color;              // fraction of the entered light that leaves again, per channel
-    ty_moisture_inputs moisture; //
-    float cooked;                // 0..1, where moisture does not say; < 0: neither does this
-    ty_input mean_free_path;     // m, transport mean free path; < 0: from the moisture law
-    int kernel;                  // ty_cdrf_kernel; `depth` knows poisson alone
-    int evaluate;                // ty_cdrf_evaluate
-    ty_input specular_weight;    // 0 = no coat, the furnace of color 1 then gives exactly 1 as well
-    ty_input specular_roughness; // < 0: from the moisture (a wet film is smoother)
+    ty_input color;                // fraction of the entered light that leaves again, per channel
+    ty_moisture_inputs moisture;   //
+    float cooked;                  // 0..1, where moisture does not say; < 0: neither does this
+    ty_input mean_free_path;       // m, transport mean free path; < 0: from the moisture law
+    ty_input mean_free_path_scale; // its factor per channel
+    int kernel;                    // ty_cdrf_kernel; `depth` knows poisson alone
+    int evaluate;                  // ty_cdrf_evaluate
+    int curvature;                 // ty_cdrf_curvature
+    ty_input specular_weight;      // 0 = no coat, the furnace of color 1 then gives exactly 1 as well
+    ty_input specular_roughness;   // < 0: from the moisture (a wet film is smoother)
     float specular_ior;
     ty_input normal; // of the specular reflection: tangent space, +y along v; no texture = none
     float normal_strength;
@@ -131,7 +141,7 @@ typedef enum ty_walk_boundary
 // One of preset, scattering, subsurface_color and (without any) color says what is within.
 typedef struct ty_walk_def
 {
-    ty_cdrf_def common;         // but for kernel and evaluate
+    ty_cdrf_def common;         // but for kernel, evaluate and curvature
     int boundary;               // ty_walk_boundary
     int preset;                 // 0 = none, else index into ty_walk_preset_names
     ty_input scattering;        // 1/mm, reduced: (1 - anisotropy) times that of single scatterings; < 0: not given
