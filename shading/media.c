@@ -69,7 +69,7 @@ bool ty_media_is_boundary(const ty_media* media, const ty_medium* body, bool ent
     int index = find(media, body);
     const ty_medium* other = top_besides(media, index);
     *outside = other ? other->ior : 1.0f;
-    if (!other || body->alone)
+    if (!other)
         return true;
     // What was never entered (an open mesh, a start on the surface) is left as if it had been entered last.
     if (index < 0 || entering)
