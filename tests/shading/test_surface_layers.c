@@ -100,6 +100,22 @@ static void test_furnace_of_varying_inputs(void** state)
     }
 }
 
+// Of fuzz alone over black: a quadrature of the published formulas in double precision, apart from the program.
+static void test_fuzz_albedo(void** state)
+{
+    (void)state;
+    static const double mu[4] = {0.1, 0.3, 0.6, 1.0}, expected[4] = {0.655, 0.419, 0.230, 0.088};
+    ty_surface_def d = stack(STACK_FUZZ, 0.5f);
+    d.base_color = ty_input_scalar(0);
+    ty_material* m = surface(&d);
+    for (int i = 0; i < 4; i++)
+    {
+        ty_bsdf b = bsdf_at(m, acos(mu[i]));
+        assert_near(lattice_weight(&b, 50000), expected[i], 0.002);
+    }
+    ty_material_destroy(m);
+}
+
 // Coloured, so that nothing hides behind white.
 static ty_surface_def coloured(void)
 {
@@ -238,6 +254,7 @@ int main(void)
         cmocka_unit_test(test_sampling),
         cmocka_unit_test(test_furnace),
         cmocka_unit_test(test_furnace_of_varying_inputs),
+        cmocka_unit_test(test_fuzz_albedo),
         cmocka_unit_test(test_reciprocity),
         cmocka_unit_test(test_metal_edge),
         cmocka_unit_test(test_specular_weight),
