@@ -98,11 +98,19 @@ static bool scatter_both(const ty_integrator* in, const ty_sampler* sampler, ty_
     return lit && ty_bsdf_sample_wi(body, u[2], (ty_vec2){u[0], u[1]}, &sample) && go_on(in, body, &sample, u[3], p);
 }
 
+// Whether light comes by a coat, or the rest of a surface, and by the body beneath at once. What is clear besides goes
+// three ways, of which one is chosen.
+static bool is_lit_twice(const ty_bsdf* bsdf)
+{
+    bool clear = bsdf->kind == TY_BSDF_SUBSURFACE && bsdf->transmission_weight > 0.0f;
+    return !clear && ty_bsdf_coat_chance(bsdf) > 0.0f;
+}
+
 // The next vertex of a path. False = the path ends.
 static bool advance(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf* bsdf, ty_path* p, ty_film_sample* out,
                     ty_counters* counters)
 {
-    if (p->bounce == 0 && ty_bsdf_coat_chance(bsdf) > 0.0f && !(bsdf->transmission_weight > 0.0f))
+    if (p->bounce == 0 && is_lit_twice(bsdf))
         return scatter_both(in, sampler, bsdf, p, out, counters);
     if (ty_bsdf_is_open(bsdf))
     {
