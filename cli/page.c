@@ -12,7 +12,7 @@
 // The view's table: so many points a side over log2 of light.
 enum
 {
-    VIEW_SIZE = 33,
+    VIEW_SIZE = 49,
     VIEW_LOW = -12,
     VIEW_HIGH = 7,
 };
