@@ -67,8 +67,8 @@ static void balls_keep_what_is_known(void** state)
     static const char* const materials[] = {
         "model: walk, specular_weight: 0, scattering: [3.92, 3.6, 4], absorption: [0.08, 0.4, 0]",
         "model: walk, specular_ior: 1, boundary: dielectric, scattering: [3.92, 3.6, 4], absorption: [0.08, 0.4, 0]",
-        "model: surface, transmission_weight: 1, specular_ior: 1, specular_roughness: 0, transmission_depth: 0.00025, "
-        "transmission_color: 0.36787944, transmission_scatter: [0.98, 0.9, 1]",
+        ("model: surface, transmission_weight: 1, specular_ior: 1, specular_roughness: 0, transmission_depth: 0.00025, "
+         "transmission_color: 0.36787944, transmission_scatter: [0.98, 0.9, 1]"),
     };
     for (int i = 0; i < 3; i++)
     {
