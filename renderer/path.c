@@ -149,6 +149,12 @@ static bool goes_through(const ty_integrator* in, const ty_sampler* sampler, con
     return through;
 }
 
+static ty_rgb extinction_in(const ty_media* media)
+{
+    const ty_medium* top = ty_media_top(media);
+    return top ? top->matter.extinction : ty_rgb_grey(0.0f);
+}
+
 // Whether the surface of a clear body is a boundary here; sets what lies on both sides.
 static bool meets_boundary(const ty_integrator* in, const ty_material* material, const ty_surface_point* point,
                            ty_path* p, float* outside)
@@ -168,15 +174,8 @@ static bool meets_boundary(const ty_integrator* in, const ty_material* material,
         p->view.done = false;
         return false;
     }
-    const ty_medium* top = ty_media_top(&beyond);
-    p->absorption[1] = top ? top->matter.extinction : ty_rgb_grey(0.0f);
+    p->absorption[1] = extinction_in(&beyond);
     return true;
-}
-
-static ty_rgb along_medium(const ty_path* p)
-{
-    const ty_medium* top = ty_media_top(&p->media);
-    return top ? top->matter.extinction : ty_rgb_grey(0.0f);
 }
 
 // Beer's law over the way to the surface, and the media on both sides of it.
@@ -221,6 +220,7 @@ static bool trace_media(const ty_integrator* in, ty_path* p, ty_hit* hit, ty_cou
     for (;;)
     {
         const ty_medium* top = ty_media_top(&p->media);
+        p->view.absorption = extinction_in(&p->media);
         bool found;
         if (top && top->alone)
         {
@@ -233,10 +233,7 @@ static bool trace_media(const ty_integrator* in, ty_path* p, ty_hit* hit, ty_cou
             }
         }
         else
-        {
-            p->view.absorption = along_medium(p);
             found = trace(in, p, hit, out);
-        }
         if (!found || !top || ty_rgb_is_black(top->matter.albedo))
             return found;
         switch (ty_path_scatter(&top->matter, hit->t, p, counters))

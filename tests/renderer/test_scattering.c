@@ -125,6 +125,21 @@ static void overlapping_and_from_within(void** state)
     }
 }
 
+// Matter that scatters nothing dims by Beer's law as well: nothing comes through twenty lengths of it, and what is left
+// is the reflection of the boundary.
+static void pure_absorption_is_dark(void** state)
+{
+    (void)state;
+    double clear[3], dark[3], mist[3];
+    albedo("model: walk, boundary: dielectric, specular_roughness: 0, scattering: 0, absorption: 0", 0.001, 64, clear);
+    albedo("model: walk, boundary: dielectric, specular_roughness: 0, scattering: 0, absorption: 100", 0.001, 64, dark);
+    albedo("model: walk, boundary: dielectric, specular_roughness: 0, scattering: 1e-4, absorption: 100", 0.001, 64,
+           mist);
+    near(clear[0], 1.0, 0.003);
+    assert_true(dark[0] < 0.12);
+    near(dark[0], mist[0], 1e-4);
+}
+
 // Under a lamp a rough boundary shows the same whether the lamp is sampled or only met.
 static void lamps_are_met_or_sampled(void** state)
 {
@@ -158,6 +173,7 @@ int main(void)
         cmocka_unit_test(balls_keep_what_is_known),
         cmocka_unit_test(colour_counts_inner_reflection),
         cmocka_unit_test(overlapping_and_from_within),
+        cmocka_unit_test(pure_absorption_is_dark),
         cmocka_unit_test(lamps_are_met_or_sampled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
