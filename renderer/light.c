@@ -2,6 +2,7 @@
 // The set of lights: sampled from a point, and met by a ray.
 #include "light.h"
 #include <tsuya/base/memory.h>
+#include <tsuya/shading/walk.h>
 
 static unsigned visible_to(const ty_light_def* light)
 {
@@ -282,9 +283,7 @@ static __attribute__((noinline)) void add_shape(const ty_light_set* set, int ind
     if (!view->full)
         due = ty_rgb_mul(
             due, share(set, index, light->visible, view, shape_pdf(light, view->from.position, ray->direction)));
-    if (!ty_rgb_is_black(view->absorption))
-        due = ty_rgb_mul(due, ty_rgb_make(ty_exp(-view->absorption.r * t), ty_exp(-view->absorption.g * t),
-                                          ty_exp(-view->absorption.b * t)));
+    due = ty_rgb_mul(due, ty_flight_transmittance(view->absorption, t));
     ty_film_sample_add(out, light->group, due);
 }
 

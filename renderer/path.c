@@ -189,7 +189,7 @@ static void arrive(const ty_integrator* in, float distance, ty_path* p)
     if (top && !ty_rgb_is_black(top->matter.albedo))
         ty_flight_pass(&top->matter, distance, &p->beta);
     else
-        p->beta = ty_rgb_mul(p->beta, ty_path_absorbed(p->absorption[0], distance));
+        p->beta = ty_rgb_mul(p->beta, ty_flight_transmittance(p->absorption[0], distance));
 }
 
 // Lights along the ray up to t.

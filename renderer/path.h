@@ -64,7 +64,6 @@ typedef enum ty_path_flight
 ty_path_flight ty_path_scatter(const ty_scattering* matter, float distance, ty_path* p, ty_counters* counters);
 
 void ty_path_find_media(const ty_scene* scene, ty_vec3 p, ty_media* out); // closed clear bodies around a point
-ty_rgb ty_path_absorbed(ty_rgb absorption, float distance);               // Beer's law
 void ty_path_pass(const ty_surface_point* point, float t, ty_ray* ray);   // t: of the hit at point
 // The ray goes straight through the surface of a clear body: on its way out it has left the medium, too.
 void ty_path_leave(const ty_scene* scene, const ty_material* material, const ty_surface_point* point, ty_vec3 direction,

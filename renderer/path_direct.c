@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light gathered at a vertex of a path: by a sample of a light, or along a sampled direction of a lobe.
 #include "path.h"
+#include <tsuya/shading/walk.h>
 
 // Light from below matters to what transmits or is lit through its body.
 static ty_vec3 lit_side(const ty_bsdf* bsdf)
@@ -106,7 +107,7 @@ void ty_path_direct_light(const ty_integrator* in, const ty_path* p, const ty_bs
     bool beyond = (ty_dot(light.wi, bsdf->point.ng) > 0.0f) != bsdf->entering;
     ty_rgb absorption = p->absorption[beyond];
     value = ty_rgb_mul(value, light.shadows ? ty_path_transmittance(in, &shadow, absorption, light.distance, counters)
-                                            : ty_path_absorbed(absorption, light.distance));
+                                            : ty_flight_transmittance(absorption, light.distance));
     if (ty_rgb_is_black(value))
         return;
     ty_path_add(in, p->soft, light.group, ty_rgb_scale(ty_rgb_mul(*beta, value), weight), out);

@@ -3,14 +3,6 @@
 #include "path.h"
 #include <tsuya/shading/walk.h>
 
-ty_rgb ty_path_absorbed(ty_rgb absorption, float distance)
-{
-    if (ty_rgb_is_black(absorption))
-        return ty_rgb_grey(1.0f);
-    return (ty_rgb){ty_exp(-absorption.r * distance), ty_exp(-absorption.g * distance),
-                    ty_exp(-absorption.b * distance)};
-}
-
 bool ty_path_meet_own(const ty_world* world, const ty_medium* body, const ty_ray* ray, ty_hit* hit)
 {
     if (!ty_world_intersect_instance(world, body->object, body->instance, ray->time, ray->origin, ray->direction,
@@ -19,19 +11,6 @@ bool ty_path_meet_own(const ty_world* world, const ty_medium* body, const ty_ray
     hit->object = body->object;
     hit->instance = body->instance;
     hit->time = ray->time;
-    return true;
-}
-
-// Of faint paths some go on for all, as in walks within bodies.
-static bool goes_on(ty_path* p)
-{
-    const float faint = 0.25f;
-    float most = ty_rgb_max(p->beta), least = faint * p->entered;
-    if (most >= least)
-        return most > 0.0f;
-    if (ty_rng_float(&p->rng) * least >= most)
-        return false;
-    p->beta = ty_rgb_scale(p->beta, least / most);
     return true;
 }
 
@@ -62,7 +41,7 @@ ty_path_flight ty_path_scatter(const ty_scattering* matter, float distance, ty_p
         counters->walks_cut++;
         return TY_PATH_ENDED;
     }
-    if (!goes_on(p))
+    if (!ty_flight_survives(p->entered, &p->beta, &p->rng))
         return TY_PATH_ENDED;
     ty_vec3 origin = ty_mad(p->ray.origin, p->ray.direction, flight);
     float time = p->ray.time;
@@ -191,5 +170,5 @@ ty_rgb ty_path_transmittance(const ty_integrator* in, ty_ray* ray, ty_rgb absorp
     if (ty_world_occluded(in->scene->world, ray))
         return ty_rgb_grey(0.0f);
     ty_rgb through = in->has_transparent ? through_surfaces(in, ray, &distance, counters) : ty_rgb_grey(1.0f);
-    return ty_rgb_mul(through, ty_path_absorbed(absorption, distance));
+    return ty_rgb_mul(through, ty_flight_transmittance(absorption, distance));
 }

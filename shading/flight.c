@@ -63,10 +63,12 @@ float ty_flight_sample(const ty_scattering* m, const ty_rgb* beta, float u_chann
     return extinction * TY_FLOAT_MAX > depth ? depth / extinction : TY_FLOAT_MAX;
 }
 
-static ty_rgb transmittance(const ty_scattering* m, float distance)
+ty_rgb ty_flight_transmittance(ty_rgb extinction, float distance)
 {
-    return ty_rgb_make(ty_exp(-m->extinction.r * distance), ty_exp(-m->extinction.g * distance),
-                       ty_exp(-m->extinction.b * distance));
+    if (ty_rgb_is_black(extinction))
+        return ty_rgb_grey(1.0f);
+    return ty_rgb_make(ty_exp(-extinction.r * distance), ty_exp(-extinction.g * distance),
+                       ty_exp(-extinction.b * distance));
 }
 
 // beta times f over the density of f that all channels have together.
@@ -80,12 +82,23 @@ static void weigh(ty_rgb f, ty_rgb* beta)
 void ty_flight_scatter(const ty_scattering* m, float distance, ty_rgb* beta)
 {
     if (!is_grey(m))
-        weigh(ty_rgb_mul(m->extinction, transmittance(m, distance)), beta);
+        weigh(ty_rgb_mul(m->extinction, ty_flight_transmittance(m->extinction, distance)), beta);
     *beta = ty_rgb_mul(*beta, m->albedo);
 }
 
 void ty_flight_pass(const ty_scattering* m, float distance, ty_rgb* beta)
 {
     if (!is_grey(m))
-        weigh(transmittance(m, distance), beta);
+        weigh(ty_flight_transmittance(m->extinction, distance), beta);
+}
+
+bool ty_flight_survives(float began, ty_rgb* beta, ty_rng* rng)
+{
+    float most = ty_rgb_max(*beta), faint = 0.25f * began;
+    if (most >= faint)
+        return most > 0.0f;
+    if (ty_rng_float(rng) * faint >= most)
+        return false;
+    *beta = ty_rgb_scale(*beta, faint / most);
+    return true;
 }

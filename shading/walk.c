@@ -3,9 +3,6 @@
 // map, because directions are carried over with their length.
 #include <tsuya/shading/walk.h>
 
-// Below this a walk goes on by chance.
-#define FAINT 0.25f
-
 typedef struct body
 {
     const ty_world* world;
@@ -80,18 +77,6 @@ static bool is_within(const ty_bounds* box, ty_vec3 p)
            p.z <= box->high.z;
 }
 
-// Faint walks end by chance, the rest stands for them.
-static bool survives(ty_rgb* beta, ty_rng* rng)
-{
-    float most = ty_rgb_max(*beta);
-    if (most >= FAINT)
-        return true;
-    if (ty_rng_float(rng) * FAINT >= most)
-        return false;
-    *beta = ty_rgb_scale(*beta, FAINT / most);
-    return true;
-}
-
 // p in the prototype's space, direction in the world. Sets of the exit what a hit says.
 static ty_walk_end walk_on(body* b, ty_vec3 p, float u, const ty_scattering* matter, ty_rng* rng, ty_walk* walk,
                            ty_hit* hit)
@@ -113,7 +98,7 @@ static ty_walk_end walk_on(body* b, ty_vec3 p, float u, const ty_scattering* mat
         }
         ty_flight_scatter(matter, length, &walk->beta);
         walk->scatterings++;
-        if (!survives(&walk->beta, rng))
+        if (!ty_flight_survives(1.0f, &walk->beta, rng))
             return TY_WALK_ABSORBED;
         p = ty_mad(p, direction, length);
         if (!is_within(&b->mesh->bounds, p))

@@ -16,12 +16,18 @@ float ty_phase_cosine(float anisotropy, float u);
 float ty_phase_pdf(float anisotropy, float cosine); // per solid angle
 ty_vec3 ty_phase_sample(float anisotropy, ty_vec3 direction, ty_vec2 u);
 
+// What is left of light after a distance through matter (Beer's law): all of it in clear matter, however far that is.
+// is.
+ty_rgb ty_flight_transmittance(ty_rgb extinction, float distance);
+
 // How far light goes before it is scattered; TY_FLOAT_MAX = for ever. Where channels differ, one of them decides, by
 // its share of beta, and all densities count (A. Wilkie et al. 2014, "Hero wavelength spectral sampling").
 float ty_flight_sample(const ty_scattering* matter, const ty_rgb* beta, float u_channel, float u);
 // Weighs beta for a flight that ended in a scattering at a distance, or went past it.
 void ty_flight_scatter(const ty_scattering* matter, float distance, ty_rgb* beta);
 void ty_flight_pass(const ty_scattering* matter, float distance, ty_rgb* beta);
+// Of faint walks some go on for all: beta below a quarter of what it was when they began. False = it ends.
+bool ty_flight_survives(float began, ty_rgb* beta, ty_rng* rng);
 
 #define TY_WALK_MAX_FLIGHTS 16384
 
