@@ -303,8 +303,6 @@ static ty_status develop_cell(ty_sweep_job* job, int index)
     ty_sweep_cell* cell = &job->cells[index];
     ty_exr* exr = NULL;
     ty_error error = {0};
-    cell->done = true;
-    cell->seconds = ty_sweep_record_seconds(job, cell);
     ty_sweep_set_cell(job, index);
     if (!job->render.develops)
     {
@@ -330,15 +328,25 @@ static void tell(const ty_sweep_job* job, int index, int rendered, int left, dou
            cell->name, what, seconds, rendered ? seconds / rendered * left : 0.0);
 }
 
-ty_status ty_sweep_render(ty_sweep_job* job)
+// What is there counts from the beginning: a stop ahead of it does not lose it. Returns how many are not.
+static int take_found(ty_sweep_job* job)
 {
-    double start = ty_time_now();
-    int left = 0, rendered = 0;
+    int missing = 0;
     ty_sweep_record_read(job);
     for (int i = 0; i < job->sweep.cell_count; i++)
     {
-        left += !job->cells[i].found;
+        ty_sweep_cell* cell = &job->cells[i];
+        missing += !cell->found;
+        cell->done = cell->found;
+        cell->seconds = cell->found ? ty_sweep_record_seconds(job, cell) : cell->seconds;
     }
+    return missing;
+}
+
+ty_status ty_sweep_render(ty_sweep_job* job)
+{
+    double start = ty_time_now();
+    int left = take_found(job), rendered = 0;
     job->render.results = json_array();
     ty_status status = TY_OK;
     for (int i = 0; i < job->sweep.cell_count; i++)

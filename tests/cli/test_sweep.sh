@@ -138,3 +138,13 @@ kill -TERM $job
 wait $job
 [ $? -eq 143 ] || fail "the stop was not told by the status"
 says "goes on from there"
+# Cells behind the one in work that were complete before are still known to be.
+expect 0 "$tsuya" sweep scene.yaml --vary render.samples=2 -o later --progress none
+"$tsuya" sweep scene.yaml --vary render.samples=50000,2 -o later --threads 1 --progress lines >out.txt 2>err.txt &
+job=$!
+for _ in $(seq 400); do grep -q 'render .*%' err.txt && break; sleep 0.02; done
+kill -TERM $job
+wait $job
+says "1 of 2 cells are complete"
+grep -q '"picture": "later/render.samples=2.exr"' later/sweep.json || fail "a stop loses a complete cell"
+grep -A5 '"picture": "later/render.samples=2.exr"' later/sweep.json | grep -q '"seconds": [0-9]' || fail "a stop loses a cell's time"
