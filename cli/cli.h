@@ -114,6 +114,11 @@ typedef struct ty_develop_def
 } ty_develop_def;
 // From --display, --view, --exposure, --bits and --ocio.
 TY_CHECKED ty_status ty_develop_options(const ty_arguments* arguments, ty_develop_def* def);
+// Whether there are such a display and view: known before anything is rendered. A mistake is logged.
+TY_CHECKED ty_status ty_develop_check(const ty_develop_def* def);
+// Scene-linear pixels of 3 or 4 channels to display values, in place.
+TY_CHECKED ty_status ty_develop_pixels(const ty_develop_def* def, float* pixels, int count, int channels,
+                                       ty_error* error);
 TY_CHECKED ty_status ty_develop(const ty_exr* exr, const ty_develop_def* def, const char* output, ty_error* error);
 
 void ty_signals_install(void);

@@ -35,19 +35,34 @@ static ty_image rgb_of_exr(const ty_exr* exr)
     return image;
 }
 
-static ty_status develop_image(ty_image* image, const ty_develop_def* def, const char* output, ty_error* error)
+ty_status ty_develop_pixels(const ty_develop_def* def, float* pixels, int count, int channels, ty_error* error)
 {
     const char* source;
-    const char* config = ty_color_choose(def->ocio, NULL, &source);
     ty_color* color;
-    ty_status status = ty_color_create(config, &color, error);
+    ty_status status = ty_color_create(ty_color_choose(def->ocio, NULL, &source), &color, error);
     if (status != TY_OK)
     {
         return status;
     }
-    status = ty_color_develop(color, def->display, def->view, def->exposure, image->pixels,
-                              image->width * image->height, image->channels, error);
+    status = ty_color_develop(color, def->display, def->view, def->exposure, pixels, count, channels, error);
     ty_color_destroy(color);
+    return status;
+}
+
+ty_status ty_develop_check(const ty_develop_def* def)
+{
+    ty_error error;
+    ty_status status = ty_develop_pixels(def, NULL, 0, 3, &error);
+    if (status != TY_OK)
+    {
+        ty_log_error(&error);
+    }
+    return status;
+}
+
+static ty_status develop_image(ty_image* image, const ty_develop_def* def, const char* output, ty_error* error)
+{
+    ty_status status = ty_develop_pixels(def, image->pixels, image->width * image->height, image->channels, error);
     return status == TY_OK ? ty_image_write(output, image, def->bits, error) : status;
 }
 

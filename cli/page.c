@@ -139,15 +139,7 @@ static ty_status pack_view(const ty_page* page, ty_bytes* out, ty_error* error)
         int at = i / 3 / (i % 3 == 0 ? 1 : i % 3 == 1 ? n : n * n) % n;
         cube.pixels[i] = (float)exp2(VIEW_LOW + (VIEW_HIGH - VIEW_LOW) * (double)at / (n - 1));
     }
-    const char* source;
-    ty_color* color = NULL;
-    ty_status status = ty_color_create(ty_color_choose(page->view.ocio, NULL, &source), &color, error);
-    if (status == TY_OK)
-    {
-        status = ty_color_develop(color, page->view.display, page->view.view, page->view.exposure, cube.pixels, count,
-                                  3, error);
-    }
-    ty_color_destroy(color);
+    ty_status status = ty_develop_pixels(&page->view, cube.pixels, count, 3, error);
     status = status == TY_OK ? ty_pack_halves(&cube, out, error) : status;
     ty_image_term(&cube);
     return status;

@@ -45,7 +45,8 @@ static ty_status read_outputs(ty_render_job* job)
     {
         return ty_usage(arguments->command, "--video needs frames: give --frames");
     }
-    return ty_develop_options(arguments, &job->develop);
+    ty_status status = ty_develop_options(arguments, &job->develop);
+    return status == TY_OK && job->develops ? ty_develop_check(&job->develop) : status;
 }
 
 // Names of the frame's files.

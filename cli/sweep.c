@@ -111,6 +111,7 @@ static ty_status prepare(ty_sweep_job* job)
     ty_status status = read_axes(job);
     status = status == TY_OK ? ty_render_progress(arguments) : status;
     status = status == TY_OK ? ty_develop_options(arguments, &job->render.develop) : status;
+    status = status == TY_OK ? ty_develop_check(&job->render.develop) : status; // the sheet at least
     status = status == TY_OK ? ty_scene_arguments_read(arguments, &job->base) : status;
     if (status == TY_OK)
     {

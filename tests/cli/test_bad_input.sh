@@ -126,6 +126,10 @@ expect 4 "$tsuya" render scene.yaml -o nowhere/out.exr
 says "nowhere"
 expect 4 "$tsuya" render scene.yaml -o /proc/out.exr
 expect 4 "$tsuya" render scene.yaml -o out.exr --stats nowhere/s.json
+expect 3 "$tsuya" render scene.yaml -o out.exr --develop --view nope
+says "unknown view 'nope'; known: ACES 1.0 SDR"
+expect 3 "$tsuya" render scene.yaml -o out.####.exr --frames 1-2 --video v.mp4 --display nope
+absent out.0001.exr
 absent out.exr
 printf 'tsuya: 1\nkind: aggregate\nfill: { count: 20 }\n' >recipe.yaml
 expect 4 timeout 20 "$tsuya" pack recipe.yaml -o nowhere/heap.glb

@@ -120,6 +120,8 @@ bad 3 "no 'skim' in materials" --vary materials.skim.moisture=0.1,0.2
 bad 2 "--spp sets render.samples, which varies" --vary render.samples=1,2 --spp 4
 bad 2 "--crop" --vary moisture=0.1,0.2 --crop 0,0,99,99
 bad 2 "no cell is called" --vary moisture=0.1,0.2 --reference moisture=0.3
+bad 3 "unknown display 'sRGBB'" --vary moisture=0.1,0.2 --display sRGBB
+bad 3 "unknown view 'ACES'" --vary moisture=0.1,0.2 --view ACES
 bad 2 "varies already" --vary moisture=0.1,0.2 --vary moisture=0.3
 expect 2 "$tsuya" sweep scene.yaml --vary moisture=0.1,0.2
 says "-o FOLDER"
