@@ -24,6 +24,9 @@ typedef struct furnace_case
 #define METAL "{ model: surface, base_metalness: 1, base_color: 1, specular_color: 1, "
 #define GLASS "{ model: surface, transmission_weight: 1, specular_ior: 1.5, "
 
+#define MIST "transmission_depth: 0.01, transmission_scatter: 0.9, "
+#define BODY "{ model: surface, subsurface_weight: 1, subsurface_color: 1, subsurface_radius: 3, "
+
 static const furnace_case cases[] = {
     {"diffuse", SPHERE, "{ model: surface, base_color: 1, specular_weight: 0 }", 1},
     {"depth, sphere", SPHERE, CDRF BARE "evaluate: depth }", 1},
@@ -50,6 +53,19 @@ static const furnace_case cases[] = {
     {"metal, anisotropic", SPHERE, METAL "specular_roughness: 0.5, specular_roughness_anisotropy: 0.8 }", 1},
     {"glass, smooth", SPHERE, GLASS "specular_roughness: 0 }", 1},
     {"glass, roughness .5", SPHERE, GLASS "specular_roughness: 0.5 }", 1},
+    {"depth by channel", TORUS, CDRF BARE "mean_free_path_scale: [1, 0.5, 0.1] }", 1},
+    {"probe gaussian, ellipsoid", ELLIPSOID, CDRF BARE "evaluate: probe, kernel: gaussian }", 1},
+    {"walk, smooth dielectric", SPHERE, WALK "specular_roughness: 0, mean_free_path: 3, boundary: dielectric }", 1},
+    {"walk, rough dielectric", SPHERE, WALK "specular_roughness: 0.4, mean_free_path: 3, boundary: dielectric }", 1},
+    {"clear mist", SPHERE, GLASS MIST "specular_roughness: 0 }", 1},
+    {"clear mist, frosted", SPHERE, GLASS MIST "specular_roughness: 0.4 }", 1},
+    {"rough diffuse", SPHERE, "{ model: surface, base_color: 1, base_diffuse_roughness: 1, specular_weight: 0 }", 1},
+    {"fuzz over diffuse", SPHERE, "{ model: surface, base_color: 1, specular_weight: 0, fuzz_weight: 1 }", 1},
+    {"fuzz over coat over diffuse", SPHERE, "{ model: surface, base_color: 1, coat_weight: 1, fuzz_weight: 1 }", 1},
+    {"surface's body, depth", ELLIPSOID, BODY "subsurface_evaluate: depth }", 1},
+    {"surface's body, walk, coated", ELLIPSOID, BODY "subsurface_evaluate: walk, coat_weight: 1 }", 1},
+    {"sheet, glossy", SPHERE, "{ model: surface, thin_walled: true, transmission_weight: 1, specular_roughness: 0.4 }",
+     1},
     {"sheet, subsurface", SPHERE,
      "{ model: surface, thin_walled: true, subsurface_weight: 1, subsurface_color: 1, specular_weight: 0 }", 1},
 };

@@ -6,7 +6,7 @@
 #define PI 3.14159265358979323846
 #define MAX_SCATTERINGS 1000000
 
-const implicit_shape implicit_shapes[IMPLICIT_COUNT] = {
+const implicit_shape implicit_shapes[IMPLICIT_COUNT + IMPLICIT_HELD] = {
     {"sphere", IMPLICIT_ELLIPSOID, true, {1, 1, 1}, 1.01},
     {"prolate", IMPLICIT_ELLIPSOID, true, {2.5, 1, 1}, 2.51},
     {"oblate", IMPLICIT_ELLIPSOID, true, {1.5, 1.5, 0.6}, 1.51},
@@ -16,6 +16,9 @@ const implicit_shape implicit_shapes[IMPLICIT_COUNT] = {
     {"disc", IMPLICIT_DISC, true, {2, 0.25, 0.2}, 2.02},
     {"dumbbell", IMPLICIT_DUMBBELL, false, {1, 1, 0.5}, 2.01},
     {"torus", IMPLICIT_TORUS, false, {1.5, 0.6, 0}, 2.11},
+    {"flat ellipsoid", IMPLICIT_ELLIPSOID, true, {3, 1.2, 0.6}, 3.01},
+    {"flat grain", IMPLICIT_SUPER, true, {1.8, 1.3, 0.5}, 2.5},
+    {"thin torus", IMPLICIT_TORUS, false, {1, 0.3, 0}, 1.31},
 };
 
 static vec scaled(vec a, double s)

@@ -30,7 +30,8 @@ typedef struct implicit_shape
 } implicit_shape;
 
 #define IMPLICIT_COUNT 9
-extern const implicit_shape implicit_shapes[IMPLICIT_COUNT];
+#define IMPLICIT_HELD 3 // after them: shapes that no choice of the model was made by
+extern const implicit_shape implicit_shapes[IMPLICIT_COUNT + IMPLICIT_HELD];
 
 static inline double vec_dot(vec a, vec b)
 {

@@ -15,8 +15,18 @@ static const struct
     group_fn* run;
     bool quick; // part of the quick form
 } groups[] = {
-    {"furnace", bench_furnace, true},    {"sphere", bench_sphere, true}, {"ellipsoid", bench_ellipsoid, true},
-    {"shapes", bench_nine_shapes, true}, {"heap", bench_heap, false},    {"pictures", bench_pictures, false},
+    {"furnace", bench_furnace, true},
+    {"sphere", bench_sphere, true},
+    {"ellipsoid", bench_ellipsoid, true},
+    {"shapes", bench_nine_shapes, true},
+    {"held", bench_held_out, true},
+    {"channels", bench_channels, true},
+    {"absorption", bench_absorption, true},
+    {"stretched", bench_stretched, true},
+    {"moisture", bench_moisture, true},
+    {"laws", bench_laws, true},
+    {"heap", bench_heap, false},
+    {"pictures", bench_pictures, false},
     {"speed", bench_speed, false},
 };
 

@@ -11,6 +11,7 @@ static bool count(bool holds)
     rows++;
     failures += !holds;
     printf("  %s\n", holds ? "holds" : "FAILS");
+    fflush(stdout);
     return holds;
 }
 

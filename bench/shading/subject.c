@@ -92,14 +92,19 @@ static ty_mesh* make_mesh(const implicit_shape* shape, int divisions)
 
 void subject_init(subject* s, const implicit_shape* shape, int divisions)
 {
+    ty_affine identity = ty_affine_identity();
+    subject_init_mapped(s, shape, divisions, &identity);
+}
+
+void subject_init_mapped(subject* s, const implicit_shape* shape, int divisions, const ty_affine* map)
+{
     ty_error error = {0};
     ty_world_def def = ty_world_def_default();
     uint32_t prototype, object;
-    ty_affine identity = ty_affine_identity();
     s->mesh = make_mesh(shape, divisions);
     must(ty_world_create(&def, &s->world, &error), &error);
     must(ty_world_add_prototype(s->world, s->mesh, &prototype, &error), &error);
-    must(ty_world_add_object(s->world, prototype, ty_motion_at_rest(&identity), (ty_object_flags){true, TY_MASK_OPAQUE},
+    must(ty_world_add_object(s->world, prototype, ty_motion_at_rest(map), (ty_object_flags){true, TY_MASK_OPAQUE},
                              &object, &error),
          &error);
     must(ty_world_commit(s->world, &error), &error);
@@ -129,21 +134,52 @@ ty_surface_point subject_point(const subject* s, vec x, vec n)
     return p;
 }
 
+static ty_material* make_cdrf(const ty_cdrf_def* def)
+{
+    ty_material* material;
+    ty_error error = {0};
+    must(ty_material_create_cdrf(def, &material, &error), &error);
+    return material;
+}
+
 ty_material* subject_cdrf(ty_cdrf_evaluate evaluate, ty_cdrf_kernel kernel, double mean_free_path)
 {
     ty_cdrf_def d = ty_cdrf_def_default();
-    ty_material* material;
-    ty_error error = {0};
     d.color = ty_input_scalar(1);
     d.specular_weight = ty_input_scalar(0);
     d.evaluate = (int)evaluate;
     d.kernel = (int)kernel;
     d.mean_free_path = ty_input_scalar((float)mean_free_path * MILLIMETRE);
-    must(ty_material_create_cdrf(&d, &material, &error), &error);
-    return material;
+    return make_cdrf(&d);
 }
 
-ty_material* subject_walk(double mean_free_path)
+ty_material* subject_depth_colored(const double path[3], const double color[3])
+{
+    ty_cdrf_def d = ty_cdrf_def_default();
+    double longest = fmax(path[0], fmax(path[1], path[2]));
+    d.color = ty_input_make(ty_rgb_make((float)color[0], (float)color[1], (float)color[2]));
+    d.specular_weight = ty_input_scalar(0);
+    d.mean_free_path = ty_input_scalar((float)longest * MILLIMETRE);
+    d.mean_free_path_scale =
+        ty_input_make(ty_rgb_make((float)(path[0] / longest), (float)(path[1] / longest), (float)(path[2] / longest)));
+    return make_cdrf(&d);
+}
+
+double subject_color_of(double albedo)
+{
+    float low = 0.0f, high = 1.0f;
+    for (int i = 0; i < 40; i++)
+    {
+        float middle = 0.5f * (low + high);
+        if (1.0 - (double)ty_cdrf_loss(middle, 0) < albedo)
+            low = middle;
+        else
+            high = middle;
+    }
+    return (double)(0.5f * (low + high));
+}
+
+ty_material* subject_walk(double mean_free_path, double albedo)
 {
     ty_walk_def d = ty_walk_def_default();
     ty_material* material;
@@ -151,27 +187,34 @@ ty_material* subject_walk(double mean_free_path)
     d.common.color = ty_input_scalar(1);
     d.common.specular_weight = ty_input_scalar(0);
     d.common.mean_free_path = ty_input_scalar((float)mean_free_path * MILLIMETRE);
+    if (albedo < 1.0)
+    {
+        d.scattering = ty_input_scalar((float)(albedo / mean_free_path));
+        d.absorption = ty_input_scalar((float)((1.0 - albedo) / mean_free_path));
+    }
     must(ty_material_create_walk(&d, &material, &error), &error);
     return material;
 }
 
-void subject_light(const subject* s, const ty_material* material, const ty_surface_point* p, const float u[4],
-                   ty_rng* rng, const vec* directions, int count, double* light)
+bool subject_leave(const subject* s, const ty_material* material, const ty_surface_point* p, const float u[4],
+                   ty_rng* rng, ty_bsdf* b, ty_rgb* weight)
 {
-    ty_bsdf b;
-    ty_rgb weight;
-    ty_material_prepare(material, &s->context, p, p->ns, &b);
-    if (!ty_bsdf_resolve(&b, &s->context, u, rng, &weight))
-        return;
+    ty_material_prepare(material, &s->context, p, p->ns, b);
+    return ty_bsdf_resolve(b, &s->context, u, rng, weight);
+}
+
+void subject_light(const subject* s, const ty_bsdf* b, double weight, ty_rng* rng, const vec* directions, int count,
+                   double* light)
+{
     for (int i = 0; i < count; i++)
     {
         float pdf;
         ty_vec3 wi = vec_float(directions[i]);
-        double f = (double)(weight.g * ty_bsdf_eval(&b, wi, &pdf).g) * (double)TY_PI;
+        double f = weight * (double)ty_bsdf_eval(b, wi, &pdf).g * (double)TY_PI;
         ty_ray ray;
         if (f <= 0.0)
             continue;
-        ty_bsdf_spawn(&b, wi, ty_rng_float(rng), &ray);
+        ty_bsdf_spawn(b, wi, ty_rng_float(rng), &ray);
         if (!ty_world_occluded(s->world, &ray))
             light[i] += f;
     }
