@@ -11,8 +11,9 @@ static json_t* errors_json(const ty_error_list* errors)
     for (int i = 0; i < errors->count; i++)
     {
         const ty_error* error = &errors->items[i];
-        json_array_append_new(array, json_pack("{s:s, s:i, s:i, s:s}", "file", error->file, "line", error->line,
-                                               "column", error->column, "text", error->text));
+        json_array_append_new(array,
+                              json_pack("{s:o, s:i, s:i, s:o}", "file", ty_json_from_text(error->file), "line",
+                                        error->line, "column", error->column, "text", ty_json_from_text(error->text)));
     }
     return array;
 }

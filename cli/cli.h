@@ -94,6 +94,10 @@ TY_CHECKED ty_status ty_scene_open(const char* path, const ty_scene_options* opt
 void ty_scene_warn(const ty_scene* scene); // of what is no mistake, but gives no picture
 void ty_errors_log(ty_error_list* errors); // logs and frees
 
+// A JSON string of any text, such as the name of a file or a message that was cut within a character: what is no UTF-8
+// becomes U+FFFD, where jansson would give nothing.
+json_t* ty_json_from_text(const char* text);
+json_t* ty_json_format(const char* format, ...) TY_PRINTF(1, 2);
 // Prints value as indented JSON on standard output and releases it.
 TY_CHECKED ty_status ty_json_print(json_t* value);
 // Writes it to a file, atomically, and releases it.

@@ -209,7 +209,7 @@ static void print_table(const compare_job* job, const ty_comparison* comparison)
 static json_t* layer_json(const compare_job* job, const ty_compared_layer* layer)
 {
     json_t *root = json_object(), *metrics = json_object();
-    json_object_set_new(root, "layer", json_string(layer->layer.name));
+    json_object_set_new(root, "layer", ty_json_from_text(layer->layer.name));
     for (int m = 0; m < TY_METRIC_COUNT; m++)
     {
         if (job->def.metrics[m])
@@ -224,8 +224,8 @@ static json_t* layer_json(const compare_job* job, const ty_compared_layer* layer
     json_object_set_new(root, "reference_mean", json_real(layer->mean[0]));
     json_object_set_new(root, "test_mean", json_real(layer->mean[1]));
     json_object_set_new(root, "farthest",
-                        json_pack("{s:i, s:i, s:s, s:f, s:f}", "x", layer->worst.x, "y", layer->worst.y, "channel",
-                                  layer->layer.channels[layer->worst.channel], "reference",
+                        json_pack("{s:i, s:i, s:o, s:f, s:f}", "x", layer->worst.x, "y", layer->worst.y, "channel",
+                                  ty_json_from_text(layer->layer.channels[layer->worst.channel]), "reference",
                                   (double)layer->worst.reference, "test", (double)layer->worst.test));
     return root;
 }
@@ -233,10 +233,11 @@ static json_t* layer_json(const compare_job* job, const ty_compared_layer* layer
 static ty_status print_json(const compare_job* job, const ty_comparison* comparison)
 {
     json_t *root = json_object(), *layers = json_array();
-    json_object_set_new(root, "reference", json_string(job->arguments->positional[0]));
-    json_object_set_new(root, "test", json_string(job->arguments->positional[1]));
+    json_object_set_new(root, "reference", ty_json_from_text(job->arguments->positional[0]));
+    json_object_set_new(root, "test", ty_json_from_text(job->arguments->positional[1]));
     json_object_set_new(root, "passed", json_boolean(!is_broken(job, comparison)));
-    json_object_set_new(root, "difference", comparison->differs ? json_string(comparison->difference) : json_null());
+    json_object_set_new(root, "difference",
+                        comparison->differs ? ty_json_from_text(comparison->difference) : json_null());
     for (int i = 0; i < comparison->layer_count && !comparison->differs; i++)
     {
         json_array_append_new(layers, layer_json(job, &comparison->layers[i]));

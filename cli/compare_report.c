@@ -41,9 +41,10 @@ static ty_status add_layer(ty_page* page, const ty_comparison* comparison, const
 
 static json_t* cell_json(const ty_compared_layer* layer, int side, int picture, bool only)
 {
-    return json_pack("{s:o, s:[s], s:i}", "label",
-                     only ? json_string(side_names[side]) : json_sprintf("%s, %s", layer->layer.name, side_names[side]),
-                     "values", layer->layer.name, "picture", picture);
+    return json_pack("{s:o, s:[o], s:i}", "label",
+                     only ? json_string(side_names[side])
+                          : ty_json_format("%s, %s", layer->layer.name, side_names[side]),
+                     "values", ty_json_from_text(layer->layer.name), "picture", picture);
 }
 
 static unsigned broken_bits(const ty_report_entry* entry, const ty_compared_layer* layer)
@@ -74,7 +75,7 @@ static ty_status add_layers(ty_page* page, const ty_report_entry* entry, ty_erro
         {
             json_array_append_new(cells, cell_json(layer, s, indices[s], comparison->layer_count == 1));
         }
-        json_array_append_new(rows, json_string(layer->layer.name));
+        json_array_append_new(rows, ty_json_from_text(layer->layer.name));
         ty_page_add_pair(page, SIDES * i, SIDES * i + 1, layer->value, broken_bits(entry, layer));
     }
     json_object_set_new(page->data, "cells", cells);
@@ -104,7 +105,7 @@ static json_t* hint_json(const ty_report_entry* entry)
                                  i ? ", " : "Limits: ", ty_metric_name(limit->metric), limit->below ? "least" : "most",
                                  limit->bound);
     }
-    return json_string(text);
+    return ty_json_from_text(text);
 }
 
 static const char* base_name(const char* path)
@@ -120,10 +121,10 @@ ty_status ty_compare_report(const char* path, const ty_report_entry* entry, cons
     char title[1024];
     snprintf(title, sizeof title, "%.500s against %.500s", base_name(entry->test), base_name(entry->reference));
     ty_page_begin(&page, "compare", title, view, all);
-    json_object_set_new(page.data, "facts", json_sprintf("Reference %s, test %s.", entry->reference, entry->test));
+    json_object_set_new(page.data, "facts", ty_json_format("Reference %s, test %s.", entry->reference, entry->test));
     json_object_set_new(page.data, "verdict", json_string(entry->failed ? "differs" : "passed"));
     json_object_set_new(page.data, "failed", json_boolean(entry->failed));
-    json_object_set_new(page.data, "fault", entry->fault ? json_string(entry->fault) : json_null());
+    json_object_set_new(page.data, "fault", entry->fault ? ty_json_from_text(entry->fault) : json_null());
     json_object_set_new(page.data, "hint",
                         json_string("Click: as B. Shift and click, or r: as A. Exposure leaves errors and layers that "
                                     "are no colours as they are."));

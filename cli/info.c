@@ -22,7 +22,7 @@ static json_t* attribute_json(const ty_exr_attribute* attribute)
     switch (attribute->type)
     {
     case TY_EXR_STRING:
-        return json_string(attribute->text);
+        return ty_json_from_text(attribute->text);
     case TY_EXR_INT1:
         return json_integer(attribute->integer[0]);
     case TY_EXR_RATIONAL:
@@ -116,7 +116,7 @@ static ty_status info_aggregate(const char* path, bool recipe, json_t** out, ty_
     json_t* attributes = json_array();
     for (int i = 0; i < aggregate->attribute_count; i++)
     {
-        json_array_append_new(attributes, json_string(aggregate->attributes[i].name));
+        json_array_append_new(attributes, ty_json_from_text(aggregate->attributes[i].name));
     }
     json_t* metrics = aggregate->metrics ? json_loads(aggregate->metrics, 0, NULL) : NULL;
     *out = json_pack("{s:s, s:i, s:i, s:o, s:s?, s:o}", "type", "aggregate", "instances",
@@ -145,12 +145,12 @@ static json_t* gltf_meshes_json(const ty_gltf_scene* scene)
         json_t* attributes = json_array();
         for (int k = 0; k < mesh->attribute_count; k++)
         {
-            json_array_append_new(attributes, json_string(mesh->attributes[k].name));
+            json_array_append_new(attributes, ty_json_from_text(mesh->attributes[k].name));
         }
         json_t* slots = json_array();
         for (int k = 0; k < mesh->slot_count; k++)
         {
-            json_array_append_new(slots, json_string(mesh->slot_names[k]));
+            json_array_append_new(slots, ty_json_from_text(mesh->slot_names[k]));
         }
         json_array_append_new(meshes,
                               json_pack("{s:s, s:i, s:i, s:b, s:o, s:o}", "name", scene->mesh_names[i], "vertices",
@@ -187,7 +187,7 @@ static json_t* gltf_json(const ty_gltf_scene* scene)
     }
     for (int i = 0; i < scene->warning_count; i++)
     {
-        json_array_append_new(warnings, json_string(scene->warnings[i]));
+        json_array_append_new(warnings, ty_json_from_text(scene->warnings[i]));
     }
     return json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:i, s:o, s:o}", "type", "gltf", "meshes", gltf_meshes_json(scene),
                      "objects", objects, "materials", materials, "cameras", cameras, "lights", lights, "images",
@@ -236,7 +236,7 @@ static ty_status info_mesh(const char* path, bool recipe, json_t** out, ty_error
     json_t* attributes = json_array();
     for (int i = 0; i < mesh->attribute_count; i++)
     {
-        json_array_append_new(attributes, json_string(mesh->attributes[i].name));
+        json_array_append_new(attributes, ty_json_from_text(mesh->attributes[i].name));
     }
     ty_vec3 low = mesh->bounds.low, high = mesh->bounds.high;
     *out = json_pack("{s:s, s:i, s:i, s:i, s:i, s:b, s:b, s:f, s:f, s:[f, f, f], s:[f, f, f], s:o, s:s?}", "type",
@@ -255,9 +255,9 @@ static ty_status info_image(const char* path, json_t** out, ty_error* error)
     ty_status status = ty_image_read(path, &image, error);
     if (status == TY_OK)
     {
-        *out =
-            json_pack("{s:s, s:i, s:i, s:i, s:b, s:s}", "type", "image", "width", image.width, "height", image.height,
-                      "channels", image.channels, "float", image.is_float, "color_space", image.color_space);
+        *out = json_pack("{s:s, s:i, s:i, s:i, s:b, s:o}", "type", "image", "width", image.width, "height",
+                         image.height, "channels", image.channels, "float", image.is_float, "color_space",
+                         ty_json_from_text(image.color_space));
         ty_image_term(&image);
     }
     return status;

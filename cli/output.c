@@ -2,11 +2,13 @@
 // Results: JSON and text on standard output, checked to have arrived.
 #include "cli.h"
 #include <errno.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <tsuya/base/file.h>
 #include <tsuya/base/log.h>
+#include <tsuya/base/memory.h>
 
 enum
 {
@@ -33,6 +35,54 @@ ty_status ty_output_finish(void)
         return TY_BAD_FILE;
     }
     return TY_OK;
+}
+
+// Bytes of the character at text; 0 when it is none.
+static size_t character_size(const char* text)
+{
+    for (size_t size = 1; size <= strnlen(text, 4); size++)
+    {
+        json_t* character = json_stringn(text, size);
+        json_decref(character);
+        if (character)
+        {
+            return size;
+        }
+    }
+    return 0;
+}
+
+json_t* ty_json_from_text(const char* text)
+{
+    static const char replacement[] = "\uFFFD";
+    json_t* whole = json_string(text);
+    if (whole)
+    {
+        return whole;
+    }
+    char *good = TY_ALLOC(char, strlen(text) * (sizeof replacement - 1) + 1), *end = good;
+    while (*text)
+    {
+        size_t size = character_size(text);
+        const char* source = size ? text : replacement;
+        size_t copied = size ? size : sizeof replacement - 1;
+        memcpy(end, source, copied);
+        end += copied;
+        text += size ? size : 1;
+    }
+    whole = json_stringn(good, (size_t)(end - good));
+    ty_free(good);
+    return whole;
+}
+
+json_t* ty_json_format(const char* format, ...)
+{
+    char text[4096];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    return ty_json_from_text(text);
 }
 
 ty_status ty_json_print(json_t* value)

@@ -320,13 +320,13 @@ static void print_result(const ty_regress_result* result)
 static json_t* result_json(const ty_regress_result* result)
 {
     json_t *root = json_object(), *metrics = json_object();
-    json_object_set_new(root, "name", json_string(result->of->name));
+    json_object_set_new(root, "name", ty_json_from_text(result->of->name));
     json_object_set_new(root, "result",
                         json_string(result->verdict == TY_REGRESS_DIFFERS ? "differs"
                                     : result->verdict == TY_REGRESS_FAULT ? "failed"
                                                                           : verdicts[result->verdict]));
     json_object_set_new(root, "seconds", json_real(result->seconds));
-    json_object_set_new(root, "text", json_string(result->text));
+    json_object_set_new(root, "text", ty_json_from_text(result->text));
     for (int i = 0; i < result->comparison.layer_count && !result->comparison.differs; i++)
     {
         const ty_compared_layer* layer = &result->comparison.layers[i];

@@ -20,9 +20,9 @@ json_t* ty_render_stats_json(const ty_scene* scene, const ty_render_stats* stats
 {
     uint64_t rays = stats->camera_rays + stats->path_rays + stats->shadow_rays + stats->interior_rays;
     json_t* root = json_object();
-    json_object_set_new(root, "scene", json_string(scene->path));
+    json_object_set_new(root, "scene", ty_json_from_text(scene->path));
     json_object_set_new(root, "hash", json_string(scene->hash));
-    json_object_set_new(root, "output", output ? json_string(output) : json_null());
+    json_object_set_new(root, "output", output ? ty_json_from_text(output) : json_null());
     json_object_set_new(root, "frame", json_real(scene->frame));
     json_object_set_new(root, "rebuilds", rebuilds_json(&scene->rebuilds));
     json_object_set_new(root, "width", json_integer(scene->film.size[0]));

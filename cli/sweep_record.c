@@ -22,15 +22,15 @@ static json_t* cell_json(const ty_sweep_job* job, int index)
     for (int a = 0; a < job->sweep.axis_count; a++)
     {
         json_object_set_new(values, job->sweep.axes[a].name,
-                            json_string(ty_sweep_value_at(&job->sweep, index, a)->text));
+                            ty_json_from_text(ty_sweep_value_at(&job->sweep, index, a)->text));
     }
     json_object_set_new(root, "name", json_string(cell->name));
     json_object_set_new(root, "values", values);
-    json_object_set_new(root, "picture", cell->done ? json_string(cell->output) : json_null());
-    json_object_set_new(root, "command", json_string(cell->command));
+    json_object_set_new(root, "picture", cell->done ? ty_json_from_text(cell->output) : json_null());
+    json_object_set_new(root, "command", ty_json_from_text(cell->command));
     json_object_set_new(root, "hash", json_string(cell->hash));
     json_object_set_new(root, "status", json_integer(cell->status));
-    json_object_set_new(root, "fault", cell->fault[0] ? json_string(cell->fault) : json_null());
+    json_object_set_new(root, "fault", cell->fault[0] ? ty_json_from_text(cell->fault) : json_null());
     json_object_set_new(root, "seconds", cell->seconds >= 0.0 ? json_real(cell->seconds) : json_null());
     return root;
 }
@@ -40,14 +40,14 @@ ty_status ty_sweep_record_write(const ty_sweep_job* job)
     json_t *root = json_object(), *cells = json_array(), *vary = json_array();
     for (int a = 0; a < job->sweep.axis_count; a++)
     {
-        json_array_append_new(vary, json_string(job->sweep.axes[a].argument));
+        json_array_append_new(vary, ty_json_from_text(job->sweep.axes[a].argument));
     }
     for (int i = 0; i < job->sweep.cell_count; i++)
     {
         json_array_append_new(cells, cell_json(job, i));
     }
     json_object_set_new(root, "tsuya", json_string(TSUYA_VERSION));
-    json_object_set_new(root, "scene", json_string(job->arguments->positional[0]));
+    json_object_set_new(root, "scene", ty_json_from_text(job->arguments->positional[0]));
     json_object_set_new(root, "vary", vary);
     json_object_set_new(root, "zip", json_boolean(job->sweep.zip));
     json_object_set_new(root, "cells", cells);

@@ -155,7 +155,7 @@ static json_t* text_of_labels(const ty_sweep_job* job, const ty_sweep_layout* la
     {
         char text[TY_SWEEP_LABEL_MAX];
         (rows ? ty_sweep_row_label : ty_sweep_column_label)(job, layout, i, text);
-        json_array_append_new(labels, json_string(text));
+        json_array_append_new(labels, ty_json_from_text(text));
     }
     return labels;
 }
@@ -166,9 +166,10 @@ static json_t* layout_json(const ty_sweep_job* job)
     char rows[TY_SWEEP_LABEL_MAX], columns[TY_SWEEP_LABEL_MAX];
     ty_sweep_row_title(job, &layout, rows);
     ty_sweep_column_title(job, &layout, columns);
-    return json_pack("{s:i, s:i, s:b, s:s, s:s, s:o, s:o}", "rows", layout.rows, "columns", layout.columns, "grid",
-                     layout.grid, "rowTitle", rows, "columnTitle", columns, "rowLabels",
-                     text_of_labels(job, &layout, true), "columnLabels", text_of_labels(job, &layout, false));
+    return json_pack("{s:i, s:i, s:b, s:o, s:o, s:o, s:o}", "rows", layout.rows, "columns", layout.columns, "grid",
+                     layout.grid, "rowTitle", ty_json_from_text(rows), "columnTitle", ty_json_from_text(columns),
+                     "rowLabels", text_of_labels(job, &layout, true), "columnLabels",
+                     text_of_labels(job, &layout, false));
 }
 
 static json_t* cell_json(const ty_sweep_job* job, int index, int picture)
@@ -179,13 +180,13 @@ static json_t* cell_json(const ty_sweep_job* job, int index, int picture)
     ty_sweep_cell_label(job, index, label);
     for (int a = 0; a < job->sweep.axis_count; a++)
     {
-        json_array_append_new(values, json_string(ty_sweep_value_at(&job->sweep, index, a)->text));
+        json_array_append_new(values, ty_json_from_text(ty_sweep_value_at(&job->sweep, index, a)->text));
     }
-    json_object_set_new(root, "label", json_string(label));
+    json_object_set_new(root, "label", ty_json_from_text(label));
     json_object_set_new(root, "values", values);
     json_object_set_new(root, "picture", picture >= 0 ? json_integer(picture) : json_null());
-    json_object_set_new(root, "command", json_string(cell->command));
-    json_object_set_new(root, "fault", cell->fault[0] ? json_string(cell->fault) : json_null());
+    json_object_set_new(root, "command", ty_json_from_text(cell->command));
+    json_object_set_new(root, "fault", cell->fault[0] ? ty_json_from_text(cell->fault) : json_null());
     json_object_set_new(root, "seconds", cell->seconds >= 0.0 ? json_real(cell->seconds) : json_null());
     return root;
 }
@@ -198,7 +199,7 @@ static void describe(reporting* r)
     double seconds = 0.0;
     for (int a = 0; a < job->sweep.axis_count; a++)
     {
-        json_array_append_new(axes, json_string(job->sweep.axes[a].name));
+        json_array_append_new(axes, ty_json_from_text(job->sweep.axes[a].name));
     }
     for (int i = 0; i < job->sweep.cell_count; i++)
     {
@@ -213,15 +214,15 @@ static void describe(reporting* r)
         snprintf(share, sizeof share, ", here at 1/%d of their width", r->factor);
     }
     json_object_set_new(r->page.data, "facts",
-                        json_sprintf("%d of %d cells, %d × %d pixels%s, rendered in %.1f s%s%s", done,
-                                     job->sweep.cell_count, size[0], size[1], share, seconds,
-                                     fixed[0] ? "; in all of them " : "", fixed));
+                        ty_json_format("%d of %d cells, %d × %d pixels%s, rendered in %.1f s%s%s", done,
+                                       job->sweep.cell_count, size[0], size[1], share, seconds,
+                                       fixed[0] ? "; in all of them " : "", fixed));
     json_object_set_new(r->page.data, "hint",
                         json_string("Click: as B. Shift and click, or r: as A. Arrow keys go from cell to cell."));
     json_object_set_new(r->page.data, "metricHint",
                         json_sprintf("Of the whole pictures, scene-linear; FLIP as the view shows them.%s",
                                      r->all ? "" : " Measured against the first reference alone."));
-    json_object_set_new(r->page.data, "footer", json_sprintf("tsuya %s · %s", TSUYA_VERSION, r->page.title));
+    json_object_set_new(r->page.data, "footer", ty_json_format("tsuya %s · %s", TSUYA_VERSION, r->page.title));
     json_array_append_new(first, json_integer(job->reference));
     json_array_append_new(first,
                           json_integer(job->reference == job->sweep.cell_count - 1 ? 0 : job->sweep.cell_count - 1));

@@ -78,6 +78,11 @@ for place in 2:25 3:20 4:21 6:18 8:50 10:29; do
 done
 expect 3 "$tsuya" check scene.yaml --json
 prints '"ok": false'
+# A message that is cut within a character is told as well.
+for name in '' x xy; do
+    expect 3 "$tsuya" check scene.yaml --json --set "objects.0.material=$name$(printf '米%.0s' $(seq 150))"
+    [ "$(grep -c '"text": "no material' out.txt)" -eq 1 ] || fail "a mistake is missing in the JSON"
+done
 
 # Meshes.
 mesh() { edited 's/shape: sphere, radius: 0.01, divisions: 16/mesh: bad.ply/'; }

@@ -32,6 +32,16 @@ expect 0 "$tsuya" sweep scene.yaml --zip --vary 'objects.0.name=</script><b>,"<!
 grep -q '</script><b>' hostile/index.html && fail "a value is not escaped"
 [ "$(grep -c '<script' hostile/index.html)" -eq "$(grep -c '</script>' hostile/index.html)" ] || fail "scripts do not match"
 
+# Words that are cut within a character are still words.
+long=$(printf '米%.0s' $(seq 100))
+expect 0 "$tsuya" sweep scene.yaml --vary "objects.0.name=x$long,xy$long,xyz$long" --vary moisture=0.1,0.9 --spp 1 -o cut --progress none
+python3 - <<'P' || fail "the page lacks the labels of rows"
+import json, re
+data = json.loads(re.search(r'id="data">(.*?)</script>', open("cut/index.html", encoding="utf-8").read(), re.S)[1])
+labels = data["layout"]["rowLabels"]
+assert [label[:4] for label in labels] == ["x米米米", "xy米米", "xyz米"], labels
+P
+
 # A large picture is made smaller, and the page says so; a cell that failed has its reason.
 expect 0 "$tsuya" sweep scene.yaml --vary moisture=0.1,0.9 --size 1400x40 --spp 1 --aov none -o wide --progress none
 grep -q '"width":700,"height":20,"full":\[1400,40\]' wide/index.html || fail "a large picture is not made smaller"
