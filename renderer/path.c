@@ -27,6 +27,7 @@ static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sa
         return false;
     p->indirect = p->soft;
     p->soft = p->soft || !sample->delta;
+    p->diffused = p->diffused || sample->kind == TY_MASK_DIFFUSE;
     p->entered = 0.0f;
     if (p->at_boundary && sample->transmitted)
         ty_media_cross(&p->media, &p->body, p->entering);
@@ -106,6 +107,13 @@ static bool is_lit_twice(const ty_bsdf* bsdf)
     return !clear && ty_bsdf_coat_chance(bsdf) > 0.0f;
 }
 
+// Without a world light leaves bodies where it enters.
+static const ty_shading_context* interior_context(const ty_integrator* in, const ty_path* p)
+{
+    static const ty_shading_context nowhere = {0};
+    return p->diffused && !in->scene->render.indirect_subsurface ? &nowhere : &in->scene->shading;
+}
+
 // The next vertex of a path. False = the path ends.
 static bool advance(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf* bsdf, ty_path* p, ty_film_sample* out,
                     ty_counters* counters)
@@ -119,7 +127,7 @@ static bool advance(const ty_integrator* in, const ty_sampler* sampler, ty_bsdf*
         ty_rng extra = ty_sampler_extra(sampler, p->bounce);
         ty_sampler_4d(sampler, ty_group_interior(p->bounce), pair);
         const float interior[4] = {pair[2], pair[0], pair[1], pair[3]};
-        bool lit = ty_bsdf_resolve(bsdf, &in->scene->shading, interior, &extra, &weight);
+        bool lit = ty_bsdf_resolve(bsdf, interior_context(in, p), interior, &extra, &weight);
         count_interior(bsdf, counters);
         if (!lit)
             return false;
@@ -294,7 +302,7 @@ static void begin(const ty_integrator* in, const ty_sampler* sampler, const ty_r
     p->view.seen = TY_MASK_CAMERA;
     p->view.absorption = ty_rgb_grey(0.0f);
     p->bounce = p->passed = 0;
-    p->soft = p->indirect = p->at_boundary = false;
+    p->soft = p->indirect = p->diffused = p->at_boundary = false;
     p->absorption[0] = p->absorption[1] = ty_rgb_grey(0.0f);
     p->media.count = 0;
     if (in->media.count > 0)

@@ -15,6 +15,7 @@ typedef struct ty_path
     int passed;           // straight through, all together
     bool soft;            // scattered by something that is no mirror already
     bool indirect;        // and once more: what the ray meets is indirect light
+    bool diffused;        // scattered by something matte or translucent already
     bool at_boundary;     // the present surface bounds a medium:
     bool entering;        // the ray arrived from outside of it
     ty_medium body;       // behind it

@@ -15,6 +15,7 @@ ty_render_def ty_render_def_default(void)
                            .samples = 64,
                            .max_depth = 16,
                            .roulette_depth = 5,
+                           .indirect_subsurface = true,
                            .texture_filter = true,
                            .ao_distance = 0.05f,
                            .curvature_scale = 0.001f};
@@ -84,6 +85,11 @@ static const ty_param render_rows[] = {
      "which of many lights is sampled: by place, direction and power, or by power alone, for comparison", false},
     {"texture_filter", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_render_def, texture_filter),
      "average textures over what a ray stands for; false = look them up at the point", false},
+    {"indirect_subsurface", TY_PARAM_BOOL, "", 0, 0, NULL, NULL, offsetof(ty_render_def, indirect_subsurface),
+     "light goes through translucent bodies wherever it meets them; false = beyond a diffuse reflection they are "
+     "matte, "
+     "of the colour of a thick piece: faster and less noise, but light from body to body loses its depth",
+     false},
     {"indirect_clamp", TY_PARAM_FLOAT, "", 0, MANY, NULL, NULL, offsetof(ty_render_def, indirect_clamp),
      "most that one path may add after its second scattering, caustics included: less noise, but the picture loses "
      "that light; 0 = no limit",

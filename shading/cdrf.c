@@ -160,7 +160,11 @@ static bool trace_interior(ty_bsdf* b, const ty_shading_context* context, const 
                            ty_rgb* weight, ty_surface_point* exit)
 {
     if (!context || !context->world)
+    {
+        if (b->material->model == TY_MODEL_WALK)
+            *weight = ty_rgb_mul(*weight, ty_walk_reflectance(&b->matter));
         return false;
+    }
     if (b->material->model == TY_MODEL_WALK)
         return ty_walk_exit(context, b, u, extra, weight, exit);
     if (b->material->cdrf.evaluate == TY_CDRF_DEPTH)

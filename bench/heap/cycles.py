@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The heap in Cycles: blender -b --factory-startup --python cycles.py -- FOLDER SAMPLES SEED THREADS WIDTH HEIGHT OUT.exr
-GRAINS MILLIMETRES. GRAINS is diffuse, burley or random_walk, the last two with that mean free path.
+GRAINS MILLIMETRES. GRAINS is diffuse, or with that Radius: burley, random_walk or fixed_radius.
 Reads the PLY files of geometry.py; every number is that of scene.yaml, which is y up, as the camera here is."""
 import math
 import struct
@@ -39,16 +39,17 @@ def diffuse(name, albedo):
 
 
 def subsurface(name, albedo):
-    """Light enters by the cosine. Cycles takes 1/(4 pi) of the radius for the mean free path of both ways."""
+    """What the radius means is said in translucent.py."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     nodes = material.node_tree.nodes
     nodes.clear()
     shader, out = nodes.new("ShaderNodeSubsurfaceScattering"), nodes.new("ShaderNodeOutputMaterial")
-    shader.falloff = "BURLEY" if grains == "burley" else "RANDOM_WALK_FIXED_RADIUS"
+    methods = {"burley": "BURLEY", "random_walk": "RANDOM_WALK", "fixed_radius": "RANDOM_WALK_FIXED_RADIUS"}
+    shader.falloff = methods[grains]
     shader.inputs["Color"].default_value = (albedo, albedo, albedo, 1.0)
     shader.inputs["Radius"].default_value = (1.0, 1.0, 1.0)
-    shader.inputs["Scale"].default_value = 4.0 * math.pi * 1e-3 * float(millimetres)
+    shader.inputs["Scale"].default_value = 1e-3 * float(millimetres)
     material.node_tree.links.new(shader.outputs[0], out.inputs["Surface"])
     return material
 

@@ -166,6 +166,34 @@ static void lamps_are_met_or_sampled(void** state)
     near(mean[1] / mean[0], 1.0, 0.015);
 }
 
+// What a floor gets back from a ball close above it, without indirect walks: as from a matte one of the same colour.
+static void indirect_walks_can_be_left_out(void** state)
+{
+    (void)state;
+    static const char scene[] =
+        "tsuya: 1\n"
+        "film: { size: [16, 16], filter: box, filter_width: 1, half: false }\n"
+        "camera: { position: [0, 0.4, 0.01], look_at: [0, 0, 0], projection: orthographic, ortho_height: 0.8 }\n"
+        "render: { samples: 256, max_depth: 40, seed: 3, indirect_subsurface: %s }\n"
+        "assets: { ball: { shape: sphere, radius: 1 }, floor: { shape: plane, size: [40, 0, 40] } }\n"
+        "lights: [ { type: environment, radiance: 1 } ]\n"
+        "materials: { m: { %s }, white: { model: surface, base_color: 1, specular_weight: 0 } }\n"
+        "objects: [ { mesh: ball, material: m, translate: [0, 1.5, 0] }, { mesh: floor, material: white } ]\n";
+    static const char walk[] = "model: walk, subsurface_color: 0.5, subsurface_radius: 1000, specular_weight: 0";
+    static const char* const cases[3][2] = {
+        {"true", "model: surface, base_color: 0.5, specular_weight: 0"}, {"false", walk}, {"true", walk}};
+    double mean[3];
+    for (int i = 0; i < 3; i++)
+    {
+        char text[2048];
+        snprintf(text, sizeof text, scene, cases[i][0], cases[i][1]);
+        mean[i] = mean_of(text);
+    }
+    print_message("matte %.4f, no indirect walks %.4f, all walks %.4f\n", mean[0], mean[1], mean[2]);
+    near(mean[1] / mean[0], 1.0, 0.01);
+    assert_true(mean[2] > 1.2 * mean[0]); // so thin a ball absorbs little
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -175,6 +203,7 @@ int main(void)
         cmocka_unit_test(overlapping_and_from_within),
         cmocka_unit_test(pure_absorption_is_dark),
         cmocka_unit_test(lamps_are_met_or_sampled),
+        cmocka_unit_test(indirect_walks_can_be_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -92,18 +92,19 @@ typedef enum ty_light_choice
 
 typedef struct ty_render_def
 {
-    int integrator;        // ty_integrator_kind
-    int samples;           // per pixel
-    int max_depth;         // surface interactions of a path
-    int roulette_depth;    // no Russian roulette before this many interactions
-    float indirect_clamp;  // largest channel of what one path adds after its second scattering; 0 = unlimited
-    ty_seed seed;          // of this frame, with animate_seed
-    bool animate_seed;     // other noise in every frame
-    int light_sampling;    // ty_light_sampling
-    int light_choice;      // ty_light_choice
-    bool texture_filter;   // textures are averaged over what a ray stands for
-    float ao_distance;     // m
-    float curvature_scale; // m: curvature * scale is shown as grey around .5
+    int integrator;           // ty_integrator_kind
+    int samples;              // per pixel
+    int max_depth;            // surface interactions of a path
+    int roulette_depth;       // no Russian roulette before this many interactions
+    bool indirect_subsurface; // light walks within bodies that other light falls on, too
+    float indirect_clamp;     // largest channel of what one path adds after its second scattering; 0 = unlimited
+    ty_seed seed;             // of this frame, with animate_seed
+    bool animate_seed;        // other noise in every frame
+    int light_sampling;       // ty_light_sampling
+    int light_choice;         // ty_light_choice
+    bool texture_filter;      // textures are averaged over what a ray stands for
+    float ao_distance;        // m
+    float curvature_scale;    // m: curvature * scale is shown as grey around .5
 } ty_render_def;
 
 // Frames are numbers; those between whole ones exist. Frame `start` is second 0.
