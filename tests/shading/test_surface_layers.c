@@ -116,6 +116,33 @@ static void test_fuzz_albedo(void** state)
     ty_material_destroy(m);
 }
 
+// Of nearly black clay light is met once: A (1 + r s / t) / pi with A = 1 / (1 + r (1/2 - 2 / (3 pi))), s the cosine
+// between the directions less the product of their own, t the larger of these where s > 0 (Fujii's Oren-Nayar).
+static void test_rough_diffuse(void** state)
+{
+    (void)state;
+    static const double pairs[5][3] = {{0, 0, 0}, {0, 1, 0}, {0.9, 0.9, 0}, {0.9, 0.5, M_PI}, {1.2, 0.8, 1}};
+    for (int k = 0; k < 2; k++)
+    {
+        double r = k ? 0.4 : 1.0;
+        ty_surface_def d = stack(STACK_CLAY, (float)r);
+        d.base_diffuse_roughness = ty_input_scalar((float)r);
+        d.base_color = ty_input_scalar(1e-4f);
+        ty_material* m = surface(&d);
+        for (int i = 0; i < 5; i++)
+        {
+            double o = pairs[i][0], a = pairs[i][1], turn = pairs[i][2], s = sin(o) * sin(a) * cos(turn);
+            double t = s > 0 ? fmax(cos(o), cos(a)) : 1, A = 1 / (1 + r * (0.5 - 2 / (3 * M_PI)));
+            ty_bsdf b = bsdf_at(m, o);
+            float pdf;
+            ty_vec3 wi = {(float)(sin(a) * cos(turn)), (float)(sin(a) * sin(turn)), (float)cos(a)};
+            double f = (double)ty_bsdf_eval(&b, wi, &pdf).g * M_PI / 1e-4 / cos(a);
+            assert_near(f, A * (1 + r * s / t), 2e-3);
+        }
+        ty_material_destroy(m);
+    }
+}
+
 // Coloured, so that nothing hides behind white.
 static ty_surface_def coloured(void)
 {
@@ -255,6 +282,7 @@ int main(void)
         cmocka_unit_test(test_furnace),
         cmocka_unit_test(test_furnace_of_varying_inputs),
         cmocka_unit_test(test_fuzz_albedo),
+        cmocka_unit_test(test_rough_diffuse),
         cmocka_unit_test(test_reciprocity),
         cmocka_unit_test(test_metal_edge),
         cmocka_unit_test(test_specular_weight),
