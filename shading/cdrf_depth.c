@@ -5,6 +5,7 @@
 #include "depth_field.h"
 #include "lobes.h"
 #include "material_private.h"
+#include "spheroid_exit.h"
 #include <tsuya/shading/cdrf.h>
 #include <tsuya/shading/sampling.h>
 
@@ -144,17 +145,11 @@ static bool find_depths(const ty_bsdf* b, interior* in)
 
 // --- the line ---
 
-// Chance of the end towards w of the line through the point at a depth, a gambler's ruin between its crossings of the
-// spheroid, times 2.
-static float end_chance(const interior* in, ty_vec3 w, float depth)
+// Seen from a depth, in the plane of the normal and a direction.
+static ty_spheroid_exit spheroid_at(const interior* in, float depth, float x, float y)
 {
-    float z = w.z, s2 = 1.0f - z * z, h = in->curvature;
-    if (in->directional)
-        h = ty_max(ty_form_towards(in->form, w.x, w.y), 0.0f);
-    float per_a = 2.0f / in->thickness, q = depth * per_a, m = 1.0f - q; // m of the derivation, over a
-    float A = s2 * h * per_a + z * z * per_a * per_a, B = m * z * per_a, C = q * (2.0f - q);
-    float S = sqrtf(B * B + A * C);
-    return S < 1e-12f * per_a ? 1.0f : 1.0f + B / S;
+    float h = in->directional ? ty_max(ty_form_towards(in->form, x, y), 0.0f) : in->curvature;
+    return ty_spheroid_exit_make(depth, in->thickness, h);
 }
 
 static crossing trace(const interior* in, ty_vec3 p, ty_vec3 w, ty_hit* hit)
@@ -187,7 +182,8 @@ static bool sees(const interior* in, ty_vec3 p, ty_vec3 way)
 }
 
 // What an exit that channel `chosen` found at once is worth to each: its density for the channel over the mean of all,
-// with (1 + B / S) cos / rho^2 for a point at distance rho within D that sees the exit. exit: from x, in the frame.
+// with the line's density times cos / rho^2 for a point at distance rho within D that sees the exit. exit: from x, in
+// the frame.
 static ty_rgb channel_weights(const interior* in, ty_vec3 exit, ty_vec3 normal, int chosen, bool convex)
 {
     float p[3], sum = 0.0f;
@@ -197,7 +193,8 @@ static ty_rgb channel_weights(const interior* in, ty_vec3 exit, ty_vec3 normal, 
         float rho = ty_length(v), cosine = ty_dot(v, normal);
         p[i] = 0.0f;
         if (i == chosen || (rho < in->thickness && cosine > 0.0f))
-            p[i] = end_chance(in, ty_mul(v, 1.0f / rho), in->depth[i]) * fabsf(cosine) / (rho * rho * rho);
+            p[i] = ty_spheroid_exit_density(spheroid_at(in, in->depth[i], v.x, v.y), v.z / rho) * fabsf(cosine) /
+                   (rho * rho * rho);
         if (i != chosen && !convex && p[i] > 0.0f &&
             !sees(in, ty_mad(in->x, in->frame.n, -in->depth[i]), ty_to_world(in->frame, v)))
             p[i] = 0.0f;
@@ -211,13 +208,13 @@ static ty_rgb one_channel(int i)
     return ty_rgb_make(i == 0 ? 3.0f : 0.0f, i == 1 ? 3.0f : 0.0f, i == 2 ? 3.0f : 0.0f);
 }
 
-// A random end of a line; u is as good as new where a channel was chosen by it.
-static ty_vec3 line_direction(const interior* in, float depth, const float u[3], float end)
+// The end of a random line that gambler's ruin chooses, of two numbers alone: so their net is one over the exits.
+static ty_vec3 line_direction(const interior* in, float depth, const float u[2])
 {
-    float sine, cosine, z = 2.0f * u[0] - 1.0f, s = ty_safe_sqrt(1.0f - z * z);
+    float sine, cosine;
     ty_sincos(2.0f * TY_PI * u[1], &sine, &cosine);
-    ty_vec3 w = {s * cosine, s * sine, z};
-    return 2.0f * end > end_chance(in, w, depth) ? ty_neg(w) : w;
+    float z = ty_spheroid_exit_height(spheroid_at(in, depth, cosine, sine), u[0]), s = ty_safe_sqrt(1.0f - z * z);
+    return (ty_vec3){s * cosine, s * sine, z};
 }
 
 bool ty_cdrf_depth_exit(const ty_shading_context* context, const ty_bsdf* b, const float u[3], ty_rng* extra,
@@ -232,9 +229,9 @@ bool ty_cdrf_depth_exit(const ty_shading_context* context, const ty_bsdf* b, con
     interior_begin(b, context->world, field, prototype, &in);
     bool coloured = find_depths(b, &in);
     int chosen = coloured ? (int)ty_min(u[2] * 3.0f, 2.5f) : 0;
-    float depth = in.depth[chosen], end = coloured ? u[2] * 3.0f - (float)chosen : u[2];
+    float depth = in.depth[chosen];
     ty_rgb alone = coloured ? one_channel(chosen) : ty_rgb_grey(1.0f), factor = alone;
-    ty_vec3 start = ty_mad(in.x, in.frame.n, -depth), w = line_direction(&in, depth, u, end);
+    ty_vec3 start = ty_mad(in.x, in.frame.n, -depth), w = line_direction(&in, depth, u);
     ty_vec3 way = ty_to_world(in.frame, w);
     ty_hit hit;
     crossing c = CROSSING_ENTRY;

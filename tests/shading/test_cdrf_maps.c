@@ -268,13 +268,13 @@ static void test_curvature_that_is_asked_for(void** state)
             ty_cdrf_def d = white_cdrf((ty_cdrf_evaluate)e, TY_CDRF_POISSON, 0.25e-3f);
             d.curvature = which;
             ty_material* m = cdrf(&d);
-            reach[which] = lit(&s, m, &p, out, across, 60000);
+            reach[which] = lit(&s, m, &p, out, across, 400000);
             ty_material_destroy(m);
         }
         assert_near(reach[TY_CDRF_CURVATURE_AUTOMATIC], reach[TY_CDRF_CURVATURE_MEAN], 1e-9);
         double towards = reach[TY_CDRF_CURVATURE_DIRECTIONAL] - reach[TY_CDRF_CURVATURE_MEAN];
         double most = reach[TY_CDRF_CURVATURE_MAXIMAL] - reach[TY_CDRF_CURVATURE_MEAN];
-        // Their exits lie on the true surface, so that little changes; the numbers being the same, it is no noise.
+        // Their exits lie on the true surface, so that little changes: -.0020 and .0012 with depth.
         assert_true(fabs(towards) > 3e-4 && fabs(towards) < 0.02 && fabs(most) > 3e-4 && fabs(most) < 0.02);
     }
     stage_term(&s);
