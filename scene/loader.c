@@ -124,7 +124,7 @@ static void inline_recipes(ty_loader* loader)
         ty_node* asset = assets->items[i];
         for (int k = 0; asset->kind == TY_NODE_MAP && k < asset->count && !loader->tree.stopped; ++k)
             if (ty_recipe_is_place(asset->keys[k].text) && ty_recipe_is_file(asset->items[k]))
-                ty_recipe_inline(loader, &asset->items[k]);
+                ty_recipe_inline(loader, &asset->items[k], "recipe");
     }
 }
 
@@ -137,7 +137,7 @@ static void inline_calibrations(ty_loader* loader)
         ty_node* material = materials->items[i];
         int found = material->kind == TY_NODE_MAP ? ty_node_find(material, "calibration") : -1;
         if (found >= 0 && ty_recipe_is_file(material->items[found]))
-            ty_recipe_inline(loader, &material->items[found]);
+            ty_recipe_inline(loader, &material->items[found], "calibration");
     }
 }
 

@@ -181,8 +181,9 @@ void ty_override_check_defines(ty_loader* loader);
 const char* ty_override_text(ty_arena* arena, const ty_scene_options* options); // as given, in one line
 
 // recipe.c
-bool ty_recipe_is_file(const ty_node* node);                // a scalar that names .yaml, .yml or .json
-void ty_recipe_inline(ty_loader* loader, ty_node** slot);   // the file's mapping in place of its name
+bool ty_recipe_is_file(const ty_node* node); // a scalar that names .yaml, .yml or .json
+// The file's mapping in place of its name; what: "recipe" or "calibration", for messages.
+void ty_recipe_inline(ty_loader* loader, ty_node** slot, const char* what);
 bool ty_recipe_is_place(const char* key);                   // aggregate, mesh, frames
 const char* ty_recipe_place(const ty_generator* generator); // the one for what it makes
 // place: the key it stands at, to be one that such an asset belongs to, or NULL. False after a report.

@@ -136,10 +136,12 @@ static ty_node** step_into_list(ty_override* o, ty_node* list, int step)
     return NULL;
 }
 
-// Whether the third step is where an asset has its recipe.
-static bool is_recipe_step(const ty_override* o)
+// What a file is that stands at the third step: of an asset its recipe, of a material its calibration; NULL = none.
+static const char* file_at_step(const ty_override* o)
 {
-    return !o->loader->is_recipe && strcmp(o->steps[0], "assets") == 0 && ty_recipe_is_place(o->steps[2]);
+    if (!o->loader->is_recipe && strcmp(o->steps[0], "assets") == 0 && ty_recipe_is_place(o->steps[2]))
+        return "recipe";
+    return strcmp(o->steps[0], "materials") == 0 && strcmp(o->steps[2], "calibration") == 0 ? "calibration" : NULL;
 }
 
 static void set_value(ty_override* o)
@@ -148,8 +150,8 @@ static void set_value(ty_override* o)
     for (int step = 0; step < o->step_count; ++step)
     {
         char described[80];
-        if (step == 3 && is_recipe_step(o) && ty_recipe_is_file(*slot))
-            ty_recipe_inline(o->loader, slot);
+        if (step == 3 && file_at_step(o) && ty_recipe_is_file(*slot))
+            ty_recipe_inline(o->loader, slot, file_at_step(o));
         ty_node* node = *slot;
         if (node->bad)
             return;

@@ -39,11 +39,11 @@ static void mark_defines(ty_loader* loader, const ty_variables* own)
         loader->defines->used[i] |= ty_node_find(own->map, loader->defines->map->keys[i].text) >= 0;
 }
 
-void ty_recipe_inline(ty_loader* loader, ty_node** slot)
+void ty_recipe_inline(ty_loader* loader, ty_node** slot, const char* what)
 {
     ty_node* name = *slot;
     ty_place place = name->place;
-    const char* path = ty_files_find(&loader->files, name, "recipe");
+    const char* path = ty_files_find(&loader->files, name, what);
     name->bad |= path == NULL;
     if (!path)
         return;

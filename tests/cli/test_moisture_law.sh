@@ -80,6 +80,10 @@ expect 1 "$tsuya" compare plain.exr uptake.exr --fail 'max>0'
 printf 'tsuya: 1\ncooked_constant: 1.2\nraw_length: 0.05\n' >law.yaml
 expect 0 "$tsuya" render scene.yaml -o law.exr --set materials.rice.calibration=law.yaml
 expect 1 "$tsuya" compare plain.exr law.exr --fail 'max>0'
+printf 'tsuya: 1\ncooked_constant: 1.1\nraw_length: 0.05\n' >other.yaml
+expect 0 "$tsuya" render scene.yaml -o other.exr --set materials.rice.calibration=other.yaml \
+    --set materials.rice.calibration.cooked_constant=1.2
+expect 0 "$tsuya" compare law.exr other.exr --fail 'max>0'
 expect 0 "$tsuya" info law.exr --recipe
 prints "cooked_constant: 1.2"
 cp out.txt again.yaml
@@ -87,7 +91,7 @@ rm law.yaml
 expect 0 "$tsuya" render again.yaml -o again.exr
 same law.exr again.exr
 expect 3 "$tsuya" check scene.yaml --set materials.rice.calibration=law.yaml
-says "no file 'law.yaml'"
+says "calibration: no file 'law.yaml'"
 printf 'tsuya: 1\ncooked_konstant: 1.2\nraw_length: 0\n' >law.yaml
 expect 3 "$tsuya" check scene.yaml --set materials.rice.calibration=law.yaml
 says "law.yaml:2:1: unknown key 'cooked_konstant' in calibration; did you mean 'cooked_constant'"
