@@ -146,9 +146,6 @@ static bool read_input_source(ty_reader* reader, ty_node* node, const ty_param* 
         if (out->texture_index < 0 || !attribute)
             return out->texture_index >= 0;
     }
-    static const char* const keys[] = {"attribute", "value", "scale", "offset", "product", NULL};
-    if (!texture && !ty_params_check_keys(reader, node, keys, "an attribute"))
-        return false;
     out->attribute = attribute->text;
     out->attribute_index = reader->find_attribute(reader->context, attribute);
     return out->attribute_index >= 0;
@@ -158,6 +155,7 @@ bool ty_param_read_input(ty_reader* reader, ty_node* node, const ty_param* row, 
 {
     static const char* const keys[] = {"texture", "attribute", "value", "scale", "offset",  "mapping", "uv",
                                        "channel", "size",      "blend", "wrap",  "product", NULL};
+    static const char* const of_attribute[] = {"attribute", "value", "scale", "offset", "product", NULL};
     *out = ty_input_scalar(1.0f);
     bool is_color = row->type == TY_PARAM_COLOR_INPUT;
     if (is_color && (node->kind != TY_NODE_MAP || ty_node_find(node, "color") >= 0))
@@ -179,7 +177,9 @@ bool ty_param_read_input(ty_reader* reader, ty_node* node, const ty_param* row, 
         out->value = ty_rgb_grey(value);
         return good;
     }
-    bool good = ty_params_check_keys(reader, node, keys, row->name);
+    bool by_attribute = ty_node_find(node, "attribute") >= 0 && ty_node_find(node, "texture") < 0;
+    bool good = by_attribute ? ty_params_check_keys(reader, node, of_attribute, "an attribute")
+                             : ty_params_check_keys(reader, node, keys, row->name);
     good &= read_input_value(reader, node, row, out);
     good &= read_factor(reader, node, "scale", &out->scale);
     good &= read_factor(reader, node, "offset", &out->offset);

@@ -182,6 +182,7 @@ static void mappings_are_read(void** state)
     fixture_one_error(MATERIAL("{ texture: ./a.png, channel: x }"), 3, 65, "'channel'");
     fixture_one_error(MATERIAL("{ texture: ./a.png, uv: { scal: 2 } }"), 3, 62, "did you mean 'scale'");
     fixture_one_error(MATERIAL("{ attribute: tint, channel: r }"), 3, 55, "unknown key 'channel' in an attribute");
+    fixture_one_error(MATERIAL("{ attribute: tint, ofset: 1 }"), 3, 55, "did you mean 'offset'");
 }
 
 int main(void)
