@@ -150,7 +150,8 @@ static bool read_enum(ty_reader* reader, const ty_node* node, const ty_param* ro
     return false;
 }
 
-static bool read_list(ty_reader* reader, ty_node* node, const ty_param* row, ty_param_list* out)
+// A list of no more entries than are read; false after a report.
+static bool is_list(ty_reader* reader, const ty_node* node, const ty_param* row)
 {
     if (node->kind != TY_NODE_LIST)
     {
@@ -162,6 +163,13 @@ static bool read_list(ty_reader* reader, ty_node* node, const ty_param* row, ty_
         ty_report(reader->errors, node->place, TY_BAD_INPUT, "'%s': more than %d entries", row->name, MAX_LIST);
         return false;
     }
+    return true;
+}
+
+static bool read_list(ty_reader* reader, ty_node* node, const ty_param* row, ty_param_list* out)
+{
+    if (!is_list(reader, node, row))
+        return false;
     char* items = ty_arena_alloc(reader->arena, (size_t)node->count, row->group->size);
     bool good = true;
     for (int i = 0; i < node->count; ++i)
@@ -172,16 +180,8 @@ static bool read_list(ty_reader* reader, ty_node* node, const ty_param* row, ty_
 
 static bool read_points(ty_reader* reader, const ty_node* node, const ty_param* row, ty_param_list* out)
 {
-    if (node->kind != TY_NODE_LIST)
-    {
-        ty_param_report_type(reader, node, row);
+    if (!is_list(reader, node, row))
         return false;
-    }
-    if (node->count > MAX_LIST)
-    {
-        ty_report(reader->errors, node->place, TY_BAD_INPUT, "'%s': more than %d entries", row->name, MAX_LIST);
-        return false;
-    }
     ty_vec3* points = TY_ARENA_ALLOC(reader->arena, ty_vec3, node->count);
     const ty_param each = {row->name, TY_PARAM_FLOAT3, row->unit, row->minimum, row->maximum, NULL, NULL, 0, "", false};
     bool good = true;
@@ -213,17 +213,9 @@ static bool read_names(ty_reader* reader, ty_node* node, const ty_param* row, ty
 static bool read_strings(ty_reader* reader, const ty_node* node, const ty_param* row, ty_param_strings* out)
 {
     bool single = node->kind == TY_NODE_SCALAR && node->text[0];
-    if (!single && node->kind != TY_NODE_LIST)
-    {
-        ty_param_report_type(reader, node, row);
+    if (!single && !is_list(reader, node, row))
         return false;
-    }
     int count = single ? 1 : node->count;
-    if (count > MAX_LIST)
-    {
-        ty_report(reader->errors, node->place, TY_BAD_INPUT, "'%s': more than %d entries", row->name, MAX_LIST);
-        return false;
-    }
     *out = (ty_param_strings){TY_ARENA_ALLOC(reader->arena, const char*, count), count};
     bool good = true;
     const ty_param text = {.name = row->name, .type = TY_PARAM_STRING, .unit = ""};
