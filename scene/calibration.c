@@ -69,8 +69,9 @@ const ty_param_table* ty_optical_states_params(void)
     return &measured_table;
 }
 
-// A file of one table; out's lists are in arena. What counts the states may report further.
-static bool read_file(const char* path, const ty_param_table* table, void* out, ty_arena* arena, ty_error_list* errors)
+// A file of one table; what out lists is in arena. Its tree, NULL after a report.
+static const ty_node* read_file(const char* path, const ty_param_table* table, void* out, ty_arena* arena,
+                                ty_error_list* errors)
 {
     char folder[TY_PATH_MAX];
     ty_path_folder(path, folder);
@@ -80,12 +81,13 @@ static bool read_file(const char* path, const ty_param_table* table, void* out, 
     ty_node* root = ty_document_load(&tree, &files, path, "", NULL);
     int first = errors->count;
     if (!root)
-        return false;
+        return NULL;
     ty_document_take_version(&tree, root);
-    bool good = ty_params_read(&reader, root, table, out, NULL) && errors->count == first;
-    if (!good || table != &measured_table)
-        return good;
-    int count = ((const measured_def*)out)->states.count;
+    return ty_params_read(&reader, root, table, out, NULL) && errors->count == first ? root : NULL;
+}
+
+static bool check_count(const ty_node* root, int count, ty_error_list* errors)
+{
     if (count >= 1 && count <= TY_CALIBRATION_MOST_STATES)
         return true;
     ty_report(errors, ty_node_get(root, "states")->place, TY_BAD_INPUT, "'states': expected 1..%d of them, got %d",
@@ -93,21 +95,13 @@ static bool read_file(const char* path, const ty_param_table* table, void* out, 
     return false;
 }
 
-static ty_status read_status(const ty_error_list* errors, int first, bool good)
-{
-    if (good)
-        return TY_OK;
-    return first < errors->count ? errors->items[first].status : TY_BAD_INPUT;
-}
-
 ty_status ty_calibration_load(const char* path, ty_moisture_law* out, ty_error_list* errors)
 {
     ty_arena* arena = ty_arena_create(0);
     int first = errors->count;
     bool good = read_file(path, ty_moisture_law_params(), out, arena, errors);
-    ty_status status = read_status(errors, first, good);
     ty_arena_destroy(arena);
-    return status;
+    return good ? TY_OK : ty_loader_status(errors, first);
 }
 
 ty_status ty_optical_states_load(const char* path, ty_optical_state** out, int* count, ty_error_list* errors)
@@ -115,8 +109,8 @@ ty_status ty_optical_states_load(const char* path, ty_optical_state** out, int* 
     ty_arena* arena = ty_arena_create(0);
     measured_def def = {0};
     int first = errors->count;
-    bool good = read_file(path, &measured_table, &def, arena, errors);
-    ty_status status = read_status(errors, first, good);
+    const ty_node* root = read_file(path, &measured_table, &def, arena, errors);
+    bool good = root && check_count(root, def.states.count, errors);
     *out = NULL;
     *count = 0;
     if (good)
@@ -126,5 +120,5 @@ ty_status ty_optical_states_load(const char* path, ty_optical_state** out, int* 
         memcpy(*out, def.states.items, (size_t)*count * sizeof(ty_optical_state));
     }
     ty_arena_destroy(arena);
-    return status;
+    return good ? TY_OK : ty_loader_status(errors, first);
 }

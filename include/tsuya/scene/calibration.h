@@ -4,7 +4,7 @@
 #include <tsuya/base/status.h>
 #include <tsuya/shading/calibrate.h>
 
-// A file that materials name as `calibration`. Mistakes go to errors with their place; the status is the first one's.
+// A file that materials name as `calibration`. Mistakes go to errors with their place; the status is theirs.
 TY_CHECKED ty_status ty_calibration_load(const char* path, ty_moisture_law* out, ty_error_list* errors);
 
 // A list `states` of what was measured at some moistures. The caller frees *out with ty_free.
