@@ -20,7 +20,6 @@ typedef struct ty_object_def
     ty_param_strings lights, exclude_lights;
 } ty_object_def;
 
-// Entries of `assets:` by their first key.
 // When the files of a sequence are shown.
 typedef struct ty_sequence_def
 {
@@ -31,6 +30,7 @@ typedef struct ty_sequence_def
     int interpolate;             // 0 none, 1 linear
 } ty_sequence_def;
 
+// Entries of `assets:` by their first key.
 typedef struct ty_mesh_asset_def
 {
     const char* mesh; // path, or the pattern of a sequence
