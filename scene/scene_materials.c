@@ -4,7 +4,17 @@
 #include "nearest.h"
 #include <string.h>
 
-#define TY_SKIPPED_MAX 63
+typedef enum model
+{
+    SURFACE,
+    CDRF,
+    WALK,
+} model;
+
+enum
+{
+    MOST_SKIPPED = 63 // names of keys
+};
 
 // An asset of that name, else a file; a name without a dot or slash can only be meant as an asset.
 static int find_texture(void* context, ty_node* name, bool is_data, bool by_uv, const int wrap[2])
@@ -66,17 +76,18 @@ static void report_impossible(ty_loader* loader, const ty_node* node, const char
     ty_report(loader->errors, place, error->status, "material '%.100s': %.800s", name, error->text);
 }
 
-static ty_status create(int model, const void* def, ty_material** out, ty_error* error)
+static ty_status create(model kind, const void* def, ty_material** out, ty_error* error)
 {
-    switch (model)
+    switch (kind)
     {
-    case 0:
+    case SURFACE:
         return ty_material_create_surface(def, out, error);
-    case 1:
+    case CDRF:
         return ty_material_create_cdrf(def, out, error);
-    default:
-        return ty_material_create_walk(def, out, error);
+    case WALK:
+        break;
     }
+    return ty_material_create_walk(def, out, error);
 }
 
 // One of three ways to say it, and one place for the degree of cooking.
@@ -111,7 +122,7 @@ static int skip_names_of(const ty_param_table* table, const char** skip, int cou
     const ty_param_table* other = table == ty_cdrf_params()   ? ty_walk_params()
                                   : table == ty_walk_params() ? ty_cdrf_params()
                                                               : NULL;
-    for (int i = 0; other && i < other->count && count < TY_SKIPPED_MAX; ++i)
+    for (int i = 0; other && i < other->count && count < MOST_SKIPPED; ++i)
     {
         bool common = false;
         for (int k = 0; k < table->count; ++k)
@@ -122,28 +133,29 @@ static int skip_names_of(const ty_param_table* table, const char** skip, int cou
     return count;
 }
 
-static void read_model(ty_loader* loader, ty_node* node, int model, int index)
+static void read_model(ty_loader* loader, ty_node* node, model kind, int index)
 {
-    const ty_param_table* const tables[] = {ty_surface_params(), ty_cdrf_params(), ty_walk_params()};
+    const ty_param_table* const tables[] = {
+        [SURFACE] = ty_surface_params(), [CDRF] = ty_cdrf_params(), [WALK] = ty_walk_params()};
     union
     {
         ty_surface_def surface;
         ty_cdrf_def cdrf;
         ty_walk_def walk;
     } def;
-    const char* skip[TY_SKIPPED_MAX + 1] = {"model"};
-    skip[skip_names_of(tables[model], skip, 1)] = NULL;
+    const char* skip[MOST_SKIPPED + 1] = {"model"};
+    skip[skip_names_of(tables[kind], skip, 1)] = NULL;
     ty_error error;
-    if (ty_params_read(&loader->reader, node, tables[model], &def, skip) &&
-        (model == 0 ||
-         read_moisture_source(loader, node, model == 1 ? &def.cdrf.moisture : &def.walk.common.moisture)) &&
-        !loader->checks_keys && create(model, &def, &loader->scene->materials[index], &error) != TY_OK)
+    if (ty_params_read(&loader->reader, node, tables[kind], &def, skip) &&
+        (kind == SURFACE ||
+         read_moisture_source(loader, node, kind == CDRF ? &def.cdrf.moisture : &def.walk.common.moisture)) &&
+        !loader->checks_keys && create(kind, &def, &loader->scene->materials[index], &error) != TY_OK)
         report_impossible(loader, node, loader->scene->material_names[index], &error);
 }
 
 static void read_material(ty_loader* loader, ty_node* node, int index)
 {
-    static const char* const models[] = {"surface", "cdrf", "walk", NULL};
+    static const char* const models[] = {[SURFACE] = "surface", [CDRF] = "cdrf", [WALK] = "walk", NULL};
     const ty_param row = {.name = "model", .type = TY_PARAM_ENUM, .unit = "", .choices = models};
     char described[80];
     const char* name = loader->scene->material_names[index];
@@ -156,13 +168,13 @@ static void read_material(ty_loader* loader, ty_node* node, int index)
                   ty_node_describe(node, described));
         return;
     }
-    ty_node* model = ty_node_get(node, "model");
+    ty_node* said = ty_node_get(node, "model");
     int chosen = 0;
-    if (!model)
+    if (!said)
         ty_report(loader->errors, node->place, TY_BAD_INPUT,
                   "material '%.100s': missing key 'model', one of: surface, cdrf, walk", name);
-    else if (ty_param_read(&loader->reader, model, &row, &chosen))
-        read_model(loader, node, chosen, index);
+    else if (ty_param_read(&loader->reader, said, &row, &chosen))
+        read_model(loader, node, (model)chosen, index);
 }
 
 void ty_read_material(ty_loader* loader, int index)
