@@ -153,10 +153,7 @@ static bool is_broken(const compare_job* job, const ty_comparison* comparison)
     bool broken = comparison->differs;
     for (int i = 0; i < comparison->layer_count; i++)
     {
-        for (int k = 0; k < job->limit_count; k++)
-        {
-            broken |= ty_limit_breaks(&job->limits[k], &comparison->layers[i]);
-        }
+        broken |= ty_limits_broken(job->limits, job->limit_count, &comparison->layers[i]) != 0;
     }
     return broken;
 }

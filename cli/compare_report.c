@@ -47,16 +47,6 @@ static json_t* cell_json(const ty_compared_layer* layer, int side, int picture, 
                      "values", ty_json_from_text(layer->layer.name), "picture", picture);
 }
 
-static unsigned broken_bits(const ty_report_entry* entry, const ty_compared_layer* layer)
-{
-    unsigned bits = 0;
-    for (int i = 0; i < entry->limit_count; i++)
-    {
-        bits |= ty_limit_breaks(&entry->limits[i], layer) ? 1u << entry->limits[i].metric : 0u;
-    }
-    return bits;
-}
-
 static ty_status add_layers(ty_page* page, const ty_report_entry* entry, ty_error* error)
 {
     const ty_comparison* comparison = entry->comparison;
@@ -76,7 +66,8 @@ static ty_status add_layers(ty_page* page, const ty_report_entry* entry, ty_erro
             json_array_append_new(cells, cell_json(layer, s, indices[s], comparison->layer_count == 1));
         }
         json_array_append_new(rows, ty_json_from_text(layer->layer.name));
-        ty_page_add_pair(page, SIDES * i, SIDES * i + 1, layer->value, broken_bits(entry, layer));
+        ty_page_add_pair(page, SIDES * i, SIDES * i + 1, layer->value,
+                         ty_limits_broken(entry->limits, entry->limit_count, layer));
     }
     json_object_set_new(page->data, "cells", cells);
     json_object_set_new(page->data, "layout",

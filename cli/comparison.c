@@ -552,6 +552,16 @@ bool ty_limit_breaks(const ty_limit* limit, const ty_compared_layer* layer)
     return limit->below ? value < limit->bound : value > limit->bound;
 }
 
+unsigned ty_limits_broken(const ty_limit* limits, int count, const ty_compared_layer* layer)
+{
+    unsigned broken = 0;
+    for (int i = 0; i < count; i++)
+    {
+        broken |= ty_limit_breaks(&limits[i], layer) ? 1u << limits[i].metric : 0u;
+    }
+    return broken;
+}
+
 ty_status ty_comparison_heat(const ty_compared_layer* layer, ty_image* out, ty_error* error)
 {
     int64_t count = (int64_t)layer->shown[0].width * layer->shown[0].height;

@@ -57,8 +57,10 @@ typedef struct ty_limit
     bool below; // fails below the bound
 } ty_limit;
 bool ty_limit_parse(const char* text, ty_limit* out);
-// Whether any layer breaks it; a metric that is not known of a layer is not judged there.
+// Whether a layer breaks it; a metric that is not known of a layer is not judged there.
 bool ty_limit_breaks(const ty_limit* limit, const ty_compared_layer* layer);
+// The metrics of which a layer breaks a limit, as bits 1 << ty_metric.
+unsigned ty_limits_broken(const ty_limit* limits, int count, const ty_compared_layer* layer);
 
 // The error map in colours; the caller frees the pixels.
 TY_CHECKED ty_status ty_comparison_heat(const ty_compared_layer* layer, ty_image* out, ty_error* error);

@@ -67,18 +67,6 @@ static ty_status put_view(FILE* file, const ty_compared_layer* layer, ty_error* 
     return status;
 }
 
-static bool is_broken(const ty_report_entry* entry, const ty_compared_layer* layer, int metric)
-{
-    for (int i = 0; i < entry->limit_count; i++)
-    {
-        if ((int)entry->limits[i].metric == metric && ty_limit_breaks(&entry->limits[i], layer))
-        {
-            return true;
-        }
-    }
-    return false;
-}
-
 static void put_limits(FILE* file, const ty_report_entry* entry)
 {
     for (int i = 0; i < entry->limit_count; i++)
@@ -101,12 +89,13 @@ static void put_table(FILE* file, const ty_report_entry* entry)
     for (int i = 0; i < entry->comparison->layer_count; i++)
     {
         const ty_compared_layer* layer = &entry->comparison->layers[i];
+        unsigned broken = ty_limits_broken(entry->limits, entry->limit_count, layer);
         fputs("<tr><td>", file);
         ty_markup_text(file, layer->layer.name);
         fputs("</td>", file);
         for (int m = 0; m < TY_METRIC_COUNT; m++)
         {
-            fprintf(file, "<td%s>", is_broken(entry, layer, m) ? " class=\"bad\"" : "");
+            fprintf(file, "<td%s>", broken & 1u << m ? " class=\"bad\"" : "");
             fprintf(file, isnan(layer->value[m]) ? "–</td>" : "%.5g</td>", layer->value[m]);
         }
         fprintf(file, "<td>%d,%d: %.5g, %.5g</td></tr>\n", layer->worst.x, layer->worst.y,
