@@ -15,12 +15,29 @@ materials:
   milk: { model: walk, preset: skim_milk }
   wax: { model: walk, boundary: dielectric, subsurface_color: [0.8, 0.6, 0.4], subsurface_radius: 3 }
   ice: { model: surface, transmission_weight: 1, transmission_depth: 0.01, transmission_scatter: [1, 2, 3] }
+  probed: { model: cdrf, color: [0.8, 0.7, 0.6], mean_free_path: 1.5, mean_free_path_scale: [1, 0.5, 0.2], evaluate: probe }
+  local: { model: cdrf, color: 0.8, mean_free_path: 1.5, evaluate: local, kernel: gaussian }
+  grain: { model: cdrf, color: 0.8, moisture: { soak: { minutes: 30, celsius: 20 }, cooked: 0.5 } }
+  layers:
+    { model: surface, base_color: [0.7, 0.5, 0.3], base_diffuse_roughness: 0.8, base_metalness: 0.3, specular_roughness: 0.3,
+      specular_roughness_anisotropy: 0.6, coat_weight: 0.6, coat_color: [0.9, 0.7, 0.5], coat_roughness: 0.1,
+      fuzz_weight: 0.4, emission_luminance: 0.02, opacity: 0.9 }
+  flesh: { model: surface, subsurface_weight: 0.7, subsurface_color: [0.8, 0.5, 0.4], subsurface_radius: 2, coat_weight: 1 }
+  jelly: { model: surface, subsurface_weight: 1, subsurface_color: [0.8, 0.5, 0.4], subsurface_radius: 2, subsurface_evaluate: walk }
+  leaf: { model: surface, thin_walled: true, subsurface_weight: 1, subsurface_color: [0.3, 0.6, 0.2], transmission_weight: 0.2 }
 objects:
   - { mesh: ball, material: milk, translate: [-0.03, 0.01, 0.01] }
   - { mesh: ball, material: wax, translate: [0.02, 0.01, 0.015] }
   - { mesh: ball, material: ice, translate: [0, 0.008, 0.03] }
   - { mesh: ball, material: skin, translate: [-0.012, 0.01, 0] }
   - { mesh: ball, material: glass, translate: [0.012, 0.01, 0] }
+  - { mesh: ball, material: probed, translate: [-0.03, 0.01, -0.03], scale: [1, 0.7, 0.6], rotate: [0, 20, 30] }
+  - { mesh: ball, material: local, translate: [-0.01, 0.01, -0.03], scale: [0.8, 0.8, 0.8] }
+  - { mesh: ball, material: grain, translate: [0.008, 0.01, -0.03], scale: [1, 0.5, 0.5] }
+  - { mesh: ball, material: layers, translate: [0.03, 0.01, -0.03] }
+  - { mesh: ball, material: flesh, translate: [-0.02, 0.03, -0.05], scale: [0.7, 0.7, 0.7] }
+  - { mesh: ball, material: jelly, translate: [0, 0.03, -0.05], scale: [0.7, 0.7, 0.7] }
+  - { mesh: ball, material: leaf, translate: [0.02, 0.03, -0.05], scale: [0.7, 0.7, 0.1] }
   - { mesh: floor, material: grey }
 lights:
   - { type: environment, radiance: 0.3 }

@@ -205,10 +205,11 @@ static void test_stretched_ball(void** state)
     }
     print_message("stretched ball against ellipsoid, RMS: depth %.4f probe %.4f local %.4f (effect %.3f)\n",
                   sqrt(squares[0]), sqrt(squares[1]), sqrt(squares[2]), sqrt(lambert));
-    // Noise is .005; the smoothing of thickness along the ball knows nothing of the ellipsoid, which is worth as much.
-    assert_true(sqrt(squares[TY_CDRF_DEPTH]) < 0.011);
-    assert_true(sqrt(squares[TY_CDRF_PROBE]) < 0.009);
-    assert_true(sqrt(squares[TY_CDRF_LOCAL]) < 0.004);
+    // What depth is off by is the smoothing of thickness along the ball, which knows nothing of the ellipsoid (.0034);
+    // a chord that leaves out how the ball bends gives .0048. The others see one surface.
+    assert_true(sqrt(squares[TY_CDRF_DEPTH]) < 0.004);
+    assert_true(sqrt(squares[TY_CDRF_PROBE]) < 0.002);
+    assert_true(sqrt(squares[TY_CDRF_LOCAL]) < 0.002);
     stage_term(&ball);
     stage_term(&mesh);
 }
