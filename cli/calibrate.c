@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `tsuya calibrate`: the law of moisture fitted to random walks in spheres, as a file that materials name.
 #include "cli.h"
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <tsuya/base/file.h>
@@ -115,78 +114,67 @@ static ty_status read_all(const ty_arguments* arguments, job* j)
 
 // --- results ---
 
-TY_PRINTF(2, 3) static void add(char** text, const char* format, ...)
-{
-    char line[256];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(line, sizeof line, format, list);
-    va_end(list);
-    char* all = ty_string_format("%s%s", *text, line);
-    ty_free(*text);
-    *text = all;
-}
-
 static double mm(float metres)
 {
     return 1e3 * (double)metres;
 }
 
-static void add_rows(char** text, const job* j, const char* lead)
+static void put_rows(FILE* file, const job* j, const char* lead)
 {
-    add(text, "%s%6s %6s %6s %6s %6s %7s %7s %7s %8s | %7s %7s %7s %7s %9s\n", lead, "w", "cooked", "l mm", "R mm",
-        "l/R", "albedo", "scatter", "t", "sigma", "matte", "gauss", "poisson", "law", "published");
+    fprintf(file, "%s%6s %6s %6s %6s %6s %7s %7s %7s %8s | %7s %7s %7s %7s %9s\n", lead, "w", "cooked", "l mm", "R mm",
+            "l/R", "albedo", "scatter", "t", "sigma", "matte", "gauss", "poisson", "law", "published");
     for (int s = 0; s < j->def.state_count; s++)
         for (int r = 0; r < j->def.radius_count; r++)
         {
             const ty_calibration_row* row = &j->fit.rows[s][r];
-            add(text, "%s%6.3f %6.2f %6.3f %6.2f %6.3f %7.4f %7.2f %7.4f %8.4f | %7.4f %7.4f %7.4f %7.4f %9.4f\n", lead,
-                (double)j->states[s].wet_basis, (double)j->states[s].cooked, mm(j->states[s].mean_free_path),
-                mm(j->radii[r]), (double)row->x, (double)row->albedo, (double)row->mean_scatterings, (double)row->t,
-                (double)row->sigma, (double)row->rms_matte, (double)row->rms_gaussian, (double)row->rms_poisson,
-                (double)row->rms_law, (double)row->rms_published);
+            fprintf(file, "%s%6.3f %6.2f %6.3f %6.2f %6.3f %7.4f %7.2f %7.4f %8.4f | %7.4f %7.4f %7.4f %7.4f %9.4f\n",
+                    lead, (double)j->states[s].wet_basis, (double)j->states[s].cooked, mm(j->states[s].mean_free_path),
+                    mm(j->radii[r]), (double)row->x, (double)row->albedo, (double)row->mean_scatterings, (double)row->t,
+                    (double)row->sigma, (double)row->rms_matte, (double)row->rms_gaussian, (double)row->rms_poisson,
+                    (double)row->rms_law, (double)row->rms_published);
         }
 }
 
-static void add_states(char** text, const job* j, const char* lead)
+static void put_states(FILE* file, const job* j, const char* lead)
 {
-    add(text, "%s%6s %6s %9s %12s %10s\n", lead, "w", "cooked", "l mm", "fitted l mm", "sigma0 mm");
+    fprintf(file, "%s%6s %6s %9s %12s %10s\n", lead, "w", "cooked", "l mm", "fitted l mm", "sigma0 mm");
     for (int s = 0; s < j->def.state_count; s++)
-        add(text, "%s%6.3f %6.2f %9.4f %12.4f %10.4f\n", lead, (double)j->states[s].wet_basis,
-            (double)j->states[s].cooked, mm(j->states[s].mean_free_path), mm(j->fit.mean_free_path[s]),
-            mm(j->fit.sigma_0[s]));
+        fprintf(file, "%s%6.3f %6.2f %9.4f %12.4f %10.4f\n", lead, (double)j->states[s].wet_basis,
+                (double)j->states[s].cooked, mm(j->states[s].mean_free_path), mm(j->fit.mean_free_path[s]),
+                mm(j->fit.sigma_0[s]));
 }
 
-static void add_law(char** text, const job* j, const char* lead)
+static void put_law(FILE* file, const job* j, const char* lead)
 {
     const ty_moisture_law* law = &j->fit.law;
-    add(text, "%scooked l = exp(%.4f + %.4f ln w) mm, raw l = %.4f mm, soaked l = %.4f mm: rms %.4f\n", lead,
-        (double)law->cooked_constant, (double)law->cooked_exponent, mm(law->raw_length), mm(law->soaked_length),
-        (double)law->rms);
-    add(text, "%spublished sigma0 = exp(%.4f + %.4f ln w) mm: rms %.4f\n", lead, (double)law->sigma_constant,
-        (double)law->sigma_exponent, (double)j->fit.rms_published);
-    add(text, "%st = %.4f x / (1 + %.4f x), x = l / R: relative rms %.4f\n", lead, (double)j->fit.slope,
-        (double)j->fit.bend, (double)j->fit.rms_t);
+    fprintf(file, "%scooked l = exp(%.4f + %.4f ln w) mm, raw l = %.4f mm, soaked l = %.4f mm: rms %.4f\n", lead,
+            (double)law->cooked_constant, (double)law->cooked_exponent, mm(law->raw_length), mm(law->soaked_length),
+            (double)law->rms);
+    fprintf(file, "%spublished sigma0 = exp(%.4f + %.4f ln w) mm: rms %.4f\n", lead, (double)law->sigma_constant,
+            (double)law->sigma_exponent, (double)j->fit.rms_published);
+    fprintf(file, "%st = %.4f x / (1 + %.4f x), x = l / R: relative rms %.4f\n", lead, (double)j->fit.slope,
+            (double)j->fit.bend, (double)j->fit.rms_t);
 }
 
-static ty_status write_law(const job* j, const char* output, ty_error* error)
+static ty_status put_file(FILE* file, const void* context, ty_error* error)
 {
+    (void)error;
+    const job* j = context;
     const ty_moisture_law* law = &j->fit.law;
-    char* text = ty_string_copy("# Written by tsuya calibrate. A material of model cdrf names it: calibration: FILE\n");
-    add(&text, "# %d walks in each sphere, seed %llu.\n#\n", j->def.walk_count, (unsigned long long)j->def.seed.value);
-    add_law(&text, j, "# ");
-    add(&text, "#\n");
-    add_states(&text, j, "# ");
-    add(&text, "#\n");
-    add_rows(&text, j, "# ");
-    add(&text, "tsuya: 1\ncooked_constant: %.6g\ncooked_exponent: %.6g\n", (double)law->cooked_constant,
-        (double)law->cooked_exponent);
-    add(&text, "raw_length: %.6g\nsoaked_length: %.6g\n", mm(law->raw_length), mm(law->soaked_length));
-    add(&text, "sigma_constant: %.6g\nsigma_exponent: %.6g\nrms: %.6g\n", (double)law->sigma_constant,
-        (double)law->sigma_exponent, (double)law->rms);
-    ty_status status = ty_file_write(output, text, strlen(text), error);
-    ty_free(text);
-    return status;
+    fputs("# Written by tsuya calibrate. A material of model cdrf names it: calibration: FILE\n", file);
+    fprintf(file, "# %d walks in each sphere, seed %llu.\n#\n", j->def.walk_count,
+            (unsigned long long)j->def.seed.value);
+    put_law(file, j, "# ");
+    fputs("#\n", file);
+    put_states(file, j, "# ");
+    fputs("#\n", file);
+    put_rows(file, j, "# ");
+    fprintf(file, "tsuya: 1\ncooked_constant: %.6g\ncooked_exponent: %.6g\n", (double)law->cooked_constant,
+            (double)law->cooked_exponent);
+    fprintf(file, "raw_length: %.6g\nsoaked_length: %.6g\n", mm(law->raw_length), mm(law->soaked_length));
+    fprintf(file, "sigma_constant: %.6g\nsigma_exponent: %.6g\nrms: %.6g\n", (double)law->sigma_constant,
+            (double)law->sigma_exponent, (double)law->rms);
+    return TY_OK;
 }
 
 static json_t* rows_json(const job* j, int s)
@@ -230,21 +218,18 @@ static ty_status report(const ty_arguments* arguments, const job* j)
 {
     const char* output = ty_argument_text(arguments, "output", NULL);
     ty_error error = {0};
-    if (output && write_law(j, output, &error) != TY_OK)
+    if (output && ty_output_write(output, put_file, j, &error) != TY_OK)
     {
         ty_log_error(&error);
         return error.status;
     }
     if (ty_argument_has(arguments, "json"))
         return print_json(j);
-    char* text = ty_string_copy("");
-    add_rows(&text, j, "");
-    add(&text, "(right of the bar: errors against the walk, a fully lit matte point being 1)\n\n");
-    add_states(&text, j, "");
-    add(&text, "\n");
-    add_law(&text, j, "");
-    fputs(text, stdout);
-    ty_free(text);
+    put_rows(stdout, j, "");
+    printf("(right of the bar: errors against the walk, a fully lit matte point being 1)\n\n");
+    put_states(stdout, j, "");
+    printf("\n");
+    put_law(stdout, j, "");
     return ty_output_finish();
 }
 

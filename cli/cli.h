@@ -2,6 +2,7 @@
 // What the commands share: options, numbers, results as JSON, signals.
 #pragma once
 #include <jansson.h>
+#include <stdio.h>
 #include <tsuya/base/status.h>
 #include <tsuya/image/exr.h>
 #include <tsuya/scene/scene.h>
@@ -104,6 +105,9 @@ TY_CHECKED ty_status ty_json_print(json_t* value);
 TY_CHECKED ty_status ty_json_write(const char* path, json_t* value);
 // Whether a file can be written at path; leaves nothing there.
 TY_CHECKED ty_status ty_output_probe(const char* path, ty_error* error);
+// A file that is complete or absent, written as a stream. A failure of put, or of the disk, leaves the old one.
+typedef ty_status ty_output_fn(FILE* file, const void* context, ty_error* error);
+TY_CHECKED ty_status ty_output_write(const char* path, ty_output_fn* put, const void* context, ty_error* error);
 // Flushes standard output and says whether everything arrived.
 TY_CHECKED ty_status ty_output_finish(void);
 

@@ -165,5 +165,5 @@ ty_status ty_comparison_report(const char* path, const char* title, const ty_rep
                                ty_error* error)
 {
     const page all = {title, entries, count};
-    return ty_markup_write(path, put_page, &all, error);
+    return ty_output_write(path, put_page, &all, error);
 }

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Escaping, and files written as a stream.
+// Escaping, and bytes as text.
 #include "markup.h"
-#include <errno.h>
-#include <string.h>
-#include <tsuya/base/file.h>
 
 void ty_markup_text(FILE* file, const char* text)
 {
@@ -47,34 +44,4 @@ void ty_markup_base64(FILE* file, const ty_bytes* bytes)
                               left > 2 ? digits[word & 63] : '='};
         fwrite(four, 1, 4, file);
     }
-}
-
-ty_status ty_markup_write(const char* path, ty_markup_fn* put, const void* context, ty_error* error)
-{
-    static ty_atomic_file output; // paths: too large for the stack
-    ty_status status = ty_atomic_begin(&output, path, error);
-    if (status != TY_OK)
-    {
-        return status;
-    }
-    FILE* file = fopen(output.temporary, "wb");
-    if (file)
-    {
-        status = put(file, context, error);
-    }
-    bool bad = !file || ferror(file);
-    if (file)
-    {
-        bad |= fclose(file) != 0;
-    }
-    if (status == TY_OK && bad)
-    {
-        status = ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "cannot write: %s", strerror(errno));
-    }
-    if (status == TY_OK)
-    {
-        return ty_atomic_commit(&output, error);
-    }
-    ty_atomic_abort(&output);
-    return status;
 }

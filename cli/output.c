@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results: JSON and text on standard output, checked to have arrived.
+// Results: JSON and text on standard output, checked to have arrived, and files.
 #include "cli.h"
 #include <errno.h>
 #include <stdarg.h>
@@ -23,6 +23,36 @@ ty_status ty_output_probe(const char* path, ty_error* error)
     {
         ty_atomic_abort(&file);
     }
+    return status;
+}
+
+ty_status ty_output_write(const char* path, ty_output_fn* put, const void* context, ty_error* error)
+{
+    static ty_atomic_file output; // paths: too large for the stack
+    ty_status status = ty_atomic_begin(&output, path, error);
+    if (status != TY_OK)
+    {
+        return status;
+    }
+    FILE* file = fopen(output.temporary, "wb");
+    if (file)
+    {
+        status = put(file, context, error);
+    }
+    bool bad = !file || ferror(file);
+    if (file)
+    {
+        bad |= fclose(file) != 0;
+    }
+    if (status == TY_OK && bad)
+    {
+        status = ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "cannot write: %s", strerror(errno));
+    }
+    if (status == TY_OK)
+    {
+        return ty_atomic_commit(&output, error);
+    }
+    ty_atomic_abort(&output);
     return status;
 }
 

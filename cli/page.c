@@ -229,5 +229,5 @@ static ty_status put_page(FILE* file, const void* context, ty_error* error)
 
 ty_status ty_page_write(const ty_page* page, const char* path, ty_error* error)
 {
-    return ty_markup_write(path, put_page, page, error);
+    return ty_output_write(path, put_page, page, error);
 }

@@ -58,5 +58,5 @@ static ty_status put_suite(FILE* file, const void* context, ty_error* error)
 ty_status ty_regress_junit(const char* path, const ty_regress_result* results, int count, ty_error* error)
 {
     const suite all = {results, count};
-    return ty_markup_write(path, put_suite, &all, error);
+    return ty_output_write(path, put_suite, &all, error);
 }
