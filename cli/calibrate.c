@@ -40,27 +40,21 @@ static ty_status read_states(const ty_arguments* arguments, job* j)
     return TY_OK;
 }
 
-// What is said for all states.
+// What is said for all states: numbers of their table, under the same names.
 static ty_status read_common(const ty_arguments* arguments, job* j)
 {
-    static const struct
+    const ty_param_table* table = ty_optical_states_params()->params[0].group;
+    for (int k = 0; k < table->count; k++)
     {
-        const char* name;
-        double low, high;
-        size_t offset;
-    } common[] = {{"albedo", 0.5, 1, offsetof(ty_optical_state, albedo)},
-                  {"anisotropy", -0.95, 0.95, offsetof(ty_optical_state, anisotropy)},
-                  {"ior", 1, 2, offsetof(ty_optical_state, ior)}};
-    for (size_t k = 0; k < sizeof common / sizeof common[0]; k++)
-    {
+        const ty_param* row = &table->params[k];
         double value;
-        if (!ty_argument_has(arguments, common[k].name))
+        if (!ty_argument_has(arguments, row->name))
             continue;
-        ty_status status = ty_argument_float(arguments, common[k].name, common[k].low, common[k].high, &value);
+        ty_status status = ty_argument_float(arguments, row->name, row->minimum, row->maximum, &value);
         if (status != TY_OK)
             return status;
         for (int i = 0; i < j->def.state_count; i++)
-            *(float*)((char*)&j->states[i] + common[k].offset) = (float)value;
+            *(float*)((char*)&j->states[i] + row->offset) = (float)value;
     }
     return TY_OK;
 }
