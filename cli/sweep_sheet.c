@@ -226,7 +226,7 @@ static ty_status compose(const sheet* s, const ink* k, ty_image* out, ty_error* 
 static ty_status write_exr(const char* path, const ty_image* image, ty_error* error)
 {
     static const char* const names[] = {"R", "G", "B"};
-    static const float acescg[8] = {0.713f, 0.293f, 0.165f, 0.83f, 0.128f, 0.044f, 0.32168f, 0.33767f};
+    static const float acescg[8] = TY_ACESCG_CHROMATICITIES;
     int window[4] = {0, 0, image->width - 1, image->height - 1};
     ty_exr* exr = ty_exr_create(window, window);
     ty_exr_add_chromaticities(exr, acescg);

@@ -112,7 +112,7 @@ const char* ty_chromaticities_space(const float chromaticities[8])
         const char* name;
         float primaries[8];
     } known[] = {
-        {"ACEScg", {0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f}},
+        {"ACEScg", TY_ACESCG_CHROMATICITIES},
         {"ACES2065-1", {0.7347f, 0.2653f, 0.0f, 1.0f, 0.0001f, -0.077f, 0.32168f, 0.33767f}},
         {"lin_rec709", {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}},
     };

@@ -19,7 +19,7 @@ static uint8_t* take_planes(const ty_image* image, size_t size)
     for (size_t i = 0; bytes && i < count * channels; i++)
     {
         float value = image->pixels[i];
-        uint16_t half = value == value ? ty_half_from_float(ty_clamp(value, -65504.0f, 65504.0f)) : 0;
+        uint16_t half = value == value ? ty_half_from_float(ty_clamp(value, -TY_HALF_MAX, TY_HALF_MAX)) : 0;
         uint8_t* plane = bytes + 2 * count * (i % channels) + i / channels;
         plane[0] = (uint8_t)(half >> 8);
         plane[count] = (uint8_t)(half & 0xffu);

@@ -212,7 +212,7 @@ static void add_frame_rate(float fps, ty_exr* exr)
 // What is the same for every part of one picture; ty_film_merge carries it over.
 static void add_scene_attributes(const ty_film* film, const ty_scene* scene, ty_exr* exr)
 {
-    static const float acescg[8] = {0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f};
+    static const float acescg[8] = TY_ACESCG_CHROMATICITIES;
     float matrix[16];
     char seed[32];
     ty_camera camera;

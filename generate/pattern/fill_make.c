@@ -6,6 +6,7 @@
 #include <tsuya/base/math.h>
 #include <tsuya/base/memory.h>
 #include <tsuya/generate/fill_recipe.h>
+#include <tsuya/image/color.h>
 
 enum
 {
@@ -211,7 +212,7 @@ static bool is_grey(ty_rgb c)
 static ty_status frame_put(run* r, const moment* m, const ty_frame_sink* sink, ty_error* error)
 {
     static const char* const names[] = {"R", "G", "B"};
-    static const float ap1[8] = {0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f};
+    static const float ap1[8] = TY_ACESCG_CHROMATICITIES;
     const ty_fill_recipe* recipe = r->recipe;
     int window[4] = {0, 0, recipe->cells[0] * recipe->scale - 1, recipe->cells[1] * recipe->scale - 1};
     ty_exr* image = ty_exr_create(window, window);

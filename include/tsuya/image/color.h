@@ -22,6 +22,12 @@ const char* ty_color_choose(const char* command_line, const char* scene, const c
 // sRGB texture for integers and linear Rec.709 for floats.
 const char* ty_color_guess_space(const ty_color* color, bool is_float, const char* claim);
 
+// Primaries and white of ACEScg, for TY_EXR_CHROMATICITIES.
+#define TY_ACESCG_CHROMATICITIES                                                                                       \
+    {                                                                                                                  \
+        0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f                                             \
+    }
+
 // The space with these primaries and white (rx ry gx gy bx by wx wy): "ACEScg", "ACES2065-1", "lin_rec709"; NULL for
 // others.
 const char* ty_chromaticities_space(const float chromaticities[8]);
