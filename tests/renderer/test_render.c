@@ -66,7 +66,7 @@ static void assert_same_pixel(const picture* a, const picture* b, int x, int y)
         fail_msg("pixel %d,%d differs", x, y);
 }
 
-// Everything there is in one picture: area, environment and delta lights, mirror, glass, subsurface, lens.
+// Everything there is in one picture: area, environment and delta lights, lens, and every material.
 static const char* const rich =
     "tsuya: 1\n"
     "film: { size: [70, 45] }\n"
@@ -79,8 +79,25 @@ static const char* const rich =
     "  white: { model: surface, base_color: 0.7, specular_roughness: 0.4 }\n"
     "  glass: { model: surface, transmission_weight: 1, specular_roughness: 0 }\n"
     "  wax: { model: cdrf, color: 0.8, mean_free_path: 5 }\n"
+    "  skin: { model: cdrf, color: [0.8, 0.6, 0.4], mean_free_path: 5, mean_free_path_scale: [1, 0.4, 0.2] }\n"
+    "  probed: { model: cdrf, color: 0.8, mean_free_path: 5, evaluate: probe }\n"
+    "  local: { model: cdrf, color: 0.8, mean_free_path: 5, evaluate: local }\n"
+    "  milk: { model: walk, preset: skim_milk }\n"
+    "  jelly: { model: walk, boundary: dielectric, subsurface_color: [0.8, 0.6, 0.4], subsurface_radius: 3 }\n"
+    "  mist: { model: surface, transmission_weight: 1, transmission_depth: 0.01, transmission_scatter: [1, 2, 3] }\n"
+    "  layers: { model: surface, base_metalness: 0.3, base_diffuse_roughness: 1, coat_weight: 0.5, fuzz_weight: 0.5, "
+    "specular_roughness_anisotropy: 0.5, subsurface_weight: 0.5, opacity: 0.8 }\n"
+    "  leaf: { model: surface, thin_walled: true, subsurface_weight: 1, transmission_weight: 0.3 }\n"
     "objects:\n"
     "  - { mesh: floor, material: white }\n"
+    "  - { mesh: ball, material: skin, translate: [-0.1, 0.1, 0], scale: [0.4, 0.3, 0.4] }\n"
+    "  - { mesh: ball, material: probed, translate: [-0.06, 0.1, 0], scale: [0.4, 0.3, 0.4] }\n"
+    "  - { mesh: ball, material: local, translate: [-0.02, 0.1, 0], scale: [0.4, 0.3, 0.4] }\n"
+    "  - { mesh: ball, material: milk, translate: [0.02, 0.1, 0], scale: [0.4, 0.4, 0.4] }\n"
+    "  - { mesh: ball, material: jelly, translate: [-0.1, 0.016, 0.06], scale: [0.4, 0.4, 0.4] }\n"
+    "  - { mesh: ball, material: mist, translate: [-0.06, 0.016, 0.06], scale: [0.4, 0.4, 0.4] }\n"
+    "  - { mesh: ball, material: layers, translate: [-0.02, 0.016, 0.06], scale: [0.4, 0.4, 0.4] }\n"
+    "  - { mesh: ball, material: leaf, translate: [0.02, 0.016, 0.06], scale: [0.4, 0.4, 0.1] }\n"
     "  - { mesh: ball, material: glass, translate: [-0.06, 0.04, 0] }\n"
     "  - { mesh: ball, material: wax, translate: [0.06, 0.04, 0] }\n"
     "lights:\n"

@@ -160,6 +160,71 @@ static void test_ellipsoid_is_symmetric(void** state)
     stage_term(&s);
 }
 
+static float at_point(const stage* s, const ty_surface_point* p, const float* field)
+{
+    const uint32_t* v = s->mesh->triangles[p->triangle];
+    return field[v[0]] * (1 - p->u - p->v) + field[v[1]] * p->u + field[v[2]] * p->v;
+}
+
+// Lines from the point beneath x where body and spheroid are no spheres: (1 + B / sqrt(B^2 + A C)) / (4 pi), by bins of
+// the cosine and around the normal.
+static void test_direction_density(void** state)
+{
+    (void)state;
+    enum
+    {
+        BINS = 24,
+        COUNT = 64000
+    };
+    ty_shape_def shape = shape_of(TY_SHAPE_ELLIPSOID, 1.5e-3f, 1e-3f, 1e-3f);
+    stage s;
+    stage_init_one(&s, &shape);
+    ty_surface_point x = seen(&s, ty_vec3_make(0.01f, 1e-5f, 2e-5f), ty_vec3_make(-1, 0, 0));
+    double D = (double)at_point(&s, &x, s.field->depth), H = (double)at_point(&s, &x, s.field->curvature);
+    double k = 0.5 * H + 1 / D, a = 0.5 * D, path = 1.8e-3;
+    double d = (1 - exp(-(double)ty_cdrf_poisson_t((float)(k * path), 0))) / k, m = a - d, C = 1 - m * m / (a * a);
+    assert_true(fabs(H * a - 1) > 0.3 && d < 0.5 * D); // no sphere, and all ends are nearer than D
+    ty_cdrf_def def = white_cdrf(TY_CDRF_DEPTH, TY_CDRF_POISSON, (float)path);
+    ty_material* material = cdrf(&def);
+    ty_rng rng = ty_rng_make((ty_seed){8}, 0, 0);
+    double count[BINS] = {0}, around[8] = {0}, chi = 0, total = 0;
+    ty_vec3 p = ty_mad(x.position, x.ns, -(float)d);
+    for (int i = 0; i < COUNT; i++)
+    {
+        ty_bsdf b;
+        ty_rgb weight;
+        float u[4];
+        random4(&rng, u);
+        ty_material_prepare(material, &s.context, &x, x.ns, &b);
+        assert_true(ty_bsdf_resolve(&b, &s.context, u, &rng, &weight));
+        ty_vec3 way = ty_sub(b.point.position, p);
+        assert_true((double)ty_length(way) < D);
+        ty_vec3 w = ty_to_local(ty_frame_from_normal(x.ns), ty_normalize(way));
+        count[(int)fmin(BINS - 1, fmax(0, (double)(w.z + 1) * BINS / 2))]++;
+        double turn = atan2((double)w.y, (double)w.x) / (2 * M_PI);
+        around[(int)((turn - floor(turn)) * 8) % 8]++;
+    }
+    for (int i = 0; i < BINS; i++)
+    {
+        double expected = 0;
+        for (int j = 0; j < 100; j++)
+        {
+            double z = -1 + 2 * (i + (j + 0.5) / 100) / BINS, A = (1 - z * z) * H / a + z * z / (a * a),
+                   B = m * z / (a * a);
+            expected += 0.5 * (1 + B / sqrt(B * B + A * C)) * 2 / BINS / 100 * COUNT;
+        }
+        total += expected;
+        chi += (count[i] - expected) * (count[i] - expected) / expected;
+    }
+    assert_near(total / COUNT, 1, 1e-3);
+    if (chi > BINS - 1 + 5 * sqrt(2.0 * (BINS - 1)))
+        fail_msg("lines do not follow their density: chi-squared %.1f of %d", chi, BINS - 1);
+    for (int i = 0; i < 8; i++)
+        assert_near(around[i], COUNT / 8.0, 5 * sqrt(COUNT / 8.0));
+    ty_material_destroy(material);
+    stage_term(&s);
+}
+
 // --- energy where rays come back ---
 
 static void test_furnace_of_a_heap(void** state)
@@ -473,6 +538,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ellipsoid_against_walks),
         cmocka_unit_test(test_ellipsoid_is_symmetric),
+        cmocka_unit_test(test_direction_density),
         cmocka_unit_test(test_furnace_of_a_heap),
         cmocka_unit_test(test_furnace_of_a_torus),
         cmocka_unit_test(test_local_curvature_has_a_direction),
