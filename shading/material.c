@@ -43,6 +43,8 @@ static ty_status check_surface(const ty_surface_def* def, ty_error* error)
             error, TY_BAD_INPUT,
             "transmission_scatter: counts scatterings in `transmission_depth`, which must be above 0 in "
             "a body that is not thin_walled");
+    if (status == TY_OK)
+        status = check_range("thin_film_ior", def->thin_film_ior, 1.0f, 3.0f, error);
     if (status == TY_OK && ty_input_is_constant(&def->specular_ior))
         status = check_range("specular_ior", def->specular_ior.value.r, 1.0f, 3.0f, error);
     if (status == TY_OK && ty_input_is_constant(&def->opacity))
@@ -86,8 +88,9 @@ ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** ou
     m->bent = has_map(&def->normal, &def->bump);
     m->matte = ty_input_is_zero(&def->specular_weight) && ty_input_is_zero(&def->base_metalness) &&
                ty_input_is_zero(&def->transmission_weight) && ty_input_is_zero(&def->coat_weight) &&
-               ty_input_is_zero(&def->fuzz_weight) && ty_input_is_zero(&def->base_diffuse_roughness) &&
-               ty_input_is_zero(&def->subsurface_weight) && !def->thin_walled;
+               ty_input_is_zero(&def->fuzz_weight) && ty_input_is_zero(&def->thin_film_weight) &&
+               ty_input_is_zero(&def->base_diffuse_roughness) && ty_input_is_zero(&def->subsurface_weight) &&
+               !def->thin_walled;
     m->body = !def->thin_walled && !ty_input_is_zero(&def->subsurface_weight);
     m->cdrf = ty_cdrf_def_default(); // how light goes through the body
     m->anisotropic = !m->matte && !ty_input_is_zero(&def->specular_roughness_anisotropy);
@@ -232,6 +235,8 @@ void ty_material_destroy(ty_material* material)
     ty_albedo_table_destroy(material->coat_under_fuzz);
     ty_albedo_table_destroy(material->base_under_coat);
     ty_albedo_table_destroy(material->base_under_fuzz);
+    ty_thin_film_bands_destroy(material->film_bands);
+    ty_thin_film_table_destroy(material->film);
     ty_loss_table_destroy(material->conductor);
     ty_loss_table_destroy(material->dielectric);
     ty_poisson_table_destroy(material->poisson);

@@ -4,6 +4,7 @@
 #include "albedo_table.h"
 #include "kernel_table.h"
 #include "loss_table.h"
+#include "thin_film.h"
 #include <tsuya/shading/material.h>
 
 typedef enum ty_material_model
@@ -36,10 +37,12 @@ struct ty_material
     ty_albedo_table* fuzz;     // E of the fuzz
     // What layers keep of the reflections beneath them, NULL where there is no such layer.
     ty_albedo_table *coat_under_fuzz, *base_under_coat, *base_under_fuzz;
-    bool anisotropic; // the frame follows the texture's u
-    bool bent;        // a normal or bump map
-    bool matte;       // nothing but a diffuse base
-    bool body;        // of `surface`: light enters a share of it
+    ty_thin_film_bands* film_bands; // of the thin film of `surface`, or NULL where it has none
+    ty_thin_film_table* film;       // what it adds to the dielectric specular, likewise
+    bool anisotropic;               // the frame follows the texture's u
+    bool bent;                      // a normal or bump map
+    bool matte;                     // nothing but a diffuse base
+    bool body;                      // of `surface`: light enters a share of it
     bool emissive;
     bool base_is_constant; // of `surface`: base_color is, and then it is this:
     ty_rgb base_color;

@@ -18,15 +18,22 @@ ty_rgb ty_surface_base_color(const ty_surface_def* def, const ty_shading_context
     return ty_rgb_scale(color, unit_input(&def->base_weight, context, point));
 }
 
+// Of the dielectric.
+static ty_rgb reflected_at(const ty_bsdf* b, float mu)
+{
+    ty_rgb share = ty_rgb_grey(ty_albedo_row_at(&b->specular_row, mu));
+    return b->film_row.count > 0 ? ty_clamp_color(ty_rgb_add(share, ty_thin_film_row_at(&b->film_row, mu))) : share;
+}
+
 // Reflection of the base's boundary seen from mu, exact for mirrors.
 static ty_rgb specular_albedo(const ty_bsdf* b, float mu)
 {
     if (b->alpha.x == 0.0f || b->thin)
         return ty_surface_reflectance(b, mu);
-    float share = b->inside ? b->transmission_weight * ty_clamp(ty_surface_boundary(b, mu), 0.1f, 0.9f)
-                            : ty_albedo_row_at(&b->specular_row, mu);
-    ty_rgb metal = ty_rgb_mul(b->metal, ty_metal_fresnel(b->color, b->metal_dip, mu));
-    return ty_rgb_add(ty_rgb_scale(b->specular_tint, (1.0f - b->metalness) * share), metal);
+    ty_rgb share = b->inside ? ty_rgb_grey(b->transmission_weight * ty_clamp(ty_surface_boundary(b, mu), 0.1f, 0.9f))
+                             : reflected_at(b, mu);
+    ty_rgb metal = ty_rgb_mul(b->metal, ty_surface_metal(b, mu));
+    return ty_rgb_add(ty_rgb_scale(ty_rgb_mul(b->specular_tint, share), 1.0f - b->metalness), metal);
 }
 
 static ty_rgb transmission_albedo(const ty_bsdf* b, float mu)
@@ -35,8 +42,9 @@ static ty_rgb transmission_albedo(const ty_bsdf* b, float mu)
         return ty_rgb_grey(0.0f); // passes unbent: ty_material_transparency
     if (b->alpha.x == 0.0f || b->thin)
         return ty_surface_transmittance(b, mu);
-    float share = b->inside ? ty_clamp(ty_surface_boundary(b, mu), 0.1f, 0.9f) : ty_albedo_row_at(&b->specular_row, mu);
-    return ty_rgb_scale(b->transmission, ty_surface_clear(b) * (1.0f - share));
+    ty_rgb share = b->inside ? ty_rgb_grey(ty_clamp(ty_surface_boundary(b, mu), 0.1f, 0.9f)) : reflected_at(b, mu);
+    share = ty_rgb_add(ty_rgb_grey(1.0f), ty_rgb_scale(share, -1.0f));
+    return ty_rgb_scale(ty_rgb_mul(b->transmission, share), ty_surface_clear(b));
 }
 
 // Albedos of the lobes seen from mu, as rgb.
@@ -44,7 +52,8 @@ static void lobe_albedos(const ty_bsdf* b, float mu, ty_rgb albedo[TY_LOBE_COUNT
 {
     float left = b->layered ? ty_layers_left(b, mu) : 1.0f;
     ty_rgb tint = ty_rgb_scale(b->layered ? ty_layers_tint(b, mu, mu) : ty_rgb_grey(1.0f), left);
-    ty_rgb diffuse = ty_rgb_scale(tint, ty_layers_diffuse(b, mu) * ty_surface_diffuse(b) / ty_max(left, 1e-6f));
+    ty_rgb diffuse =
+        ty_rgb_scale(ty_rgb_mul(tint, ty_layers_diffuse_color(b, mu)), ty_surface_diffuse(b) / ty_max(left, 1e-6f));
     ty_rgb metal_lost = ty_rgb_scale(b->conductor_gain, TY_PI * b->conductor_mean / ty_max(left, 1e-6f));
     ty_rgb near = ty_rgb_scale(b->specular_tint, b->near_gain * TY_PI * b->near_mean / ty_max(left, 1e-6f));
     ty_rgb far = ty_rgb_scale(b->transmission, b->far_gain * TY_PI * b->far_loss.average);
@@ -65,8 +74,8 @@ static void lobe_albedos(const ty_bsdf* b, float mu, ty_rgb albedo[TY_LOBE_COUNT
 
 static ty_rgb body_albedo(const ty_bsdf* b, float mu)
 {
-    float share = ty_surface_body(b) * ty_layers_diffuse(b, mu);
-    return ty_rgb_scale(ty_rgb_mul(b->body_color, ty_layers_tint(b, mu, mu)), share);
+    ty_rgb share = ty_rgb_scale(ty_layers_diffuse_color(b, mu), ty_surface_body(b));
+    return ty_rgb_mul(ty_rgb_mul(b->body_color, ty_layers_tint(b, mu, mu)), share);
 }
 
 static void choose_probabilities(ty_bsdf* b, float mu)
@@ -141,6 +150,16 @@ static float conductor_share(float f, float loss)
     return f * f * (1.0f - loss) / (1.0f - f * loss);
 }
 
+static ty_rgb metal_average(const ty_bsdf* b)
+{
+    if (!(b->film.weight > 0.0f))
+        return ty_metal_average(b->color, b->metal_dip);
+    ty_rgb sum = {0};
+    for (int i = 0; i < TY_MU_NODES; i++)
+        sum = ty_rgb_add(sum, ty_rgb_scale(ty_surface_metal(b, ty_mu_nodes[i].mu), ty_mu_nodes[i].weight));
+    return sum;
+}
+
 static void prepare_conductor_loss(const ty_material* material, float roughness, float mu, ty_bsdf* b)
 {
     b->conductor_loss = ty_loss_table_row(material->conductor, roughness, 1.0f);
@@ -149,7 +168,7 @@ static void prepare_conductor_loss(const ty_material* material, float roughness,
     if (!(b->conductor_mean > 0.0f))
         return;
     float scale = b->metalness * ty_layers_metal(b, mu) / (TY_PI * b->conductor_mean);
-    ty_rgb f = ty_rgb_scale(ty_metal_average(b->color, b->metal_dip), w);
+    ty_rgb f = ty_rgb_scale(metal_average(b), w);
     b->conductor_gain = ty_rgb_make(scale * conductor_share(f.r, loss), scale * conductor_share(f.g, loss),
                                     scale * conductor_share(f.b, loss));
 }
@@ -285,6 +304,21 @@ static void prepare_darkening(const ty_surface_def* s, const ty_shading_context*
     b->conductor_gain = ty_rgb_mul(b->conductor_gain, shade);
 }
 
+// relative: index of the base; cover: of the coat on average, where it is.
+static void prepare_film(const ty_material* material, const ty_shading_context* context, float roughness,
+                         float relative, float cover, ty_bsdf* b)
+{
+    const ty_surface_def* s = &material->surface;
+    float weight = unit_input(&s->thin_film_weight, context, &b->point);
+    float thickness = ty_input_float(&s->thin_film_thickness, context, &b->point);
+    if (!(weight > 0.0f) || !(thickness > 0.0f))
+        return;
+    float outside = b->transmission_weight > 0.0f ? b->outside : 1.0f;
+    b->film = ty_thin_film_make(material->film_bands, weight, thickness, s->thin_film_ior, outside, cover, relative);
+    if (!b->inside)
+        b->film_row = ty_thin_film_table_row(material->film, roughness, thickness, weight);
+}
+
 // Roughness, index and what follows from them. b->outside is the index of what is around the body.
 static void prepare_boundary(const ty_material* material, const ty_shading_context* context, float roughness,
                              ty_bsdf* b)
@@ -297,8 +331,10 @@ static void prepare_boundary(const ty_material* material, const ty_shading_conte
     float relative = b->transmission_weight > 0.0f ? ior / b->outside : ior;
     b->eta = b->inside ? 1.0f / relative : relative;
     b->shine = ty_shine(b->eta, b->specular_weight, cover);
+    if (material->film_bands)
+        prepare_film(material, context, roughness, relative, cover, b);
     // Matched indices bend nothing, and a rough boundary would have no facet to speak of.
-    if (fabsf(relative - 1.0f) < 0.001f && b->transmission_weight > 0.0f)
+    if (fabsf(relative - 1.0f) < 0.001f && b->transmission_weight > 0.0f && !(b->thin && b->film.weight > 0.0f))
         b->alpha = ty_ggx_round(0.0f);
     else if (material->anisotropic)
         b->alpha = ty_ggx_alpha_stretched(roughness, unit_input(&s->specular_roughness_anisotropy, context, p));
@@ -314,6 +350,18 @@ static void prepare_boundary(const ty_material* material, const ty_shading_conte
     prepare_loss(material, roughness, b);
 }
 
+// The same by channels.
+static void couple_film(float mu, ty_bsdf* b)
+{
+    ty_rgb mean = {0}, left = ty_layers_diffuse_color(b, mu);
+    for (int i = 0; i < TY_MU_NODES && b->layered; i++)
+        mean = ty_rgb_add(mean, ty_rgb_scale(ty_layers_diffuse_color(b, ty_mu_nodes[i].mu), ty_mu_nodes[i].weight));
+    if (!b->layered)
+        mean = ty_rgb_add(ty_rgb_grey(1.0f - b->specular_row.average), ty_rgb_scale(b->film_row.average, -1.0f));
+    b->film_gain =
+        ty_rgb_make(left.r / ty_max(mean.r, 1e-6f), left.g / ty_max(mean.g, 1e-6f), left.b / ty_max(mean.b, 1e-6f));
+}
+
 // Light to and from the diffuse base is what the layers leave, over its mean, so that white stays white (Kelemen &
 // Szirmay-Kalos 2001).
 static void couple_diffuse(float mu, ty_bsdf* b)
@@ -325,10 +373,15 @@ static void couple_diffuse(float mu, ty_bsdf* b)
     }
     float mean = b->layered ? ty_layers_mean(b, ty_layers_diffuse) : 1.0f - b->specular_row.average;
     b->diffuse_gain = mean > 0.0f ? ty_layers_diffuse(b, mu) / mean : 0.0f;
-    if (!(b->diffuse_roughness > 0.0f) || !(b->layered || b->specular_row.count > 0))
+    if (b->film_row.count > 0)
+        couple_film(mu, b);
+    if (!(b->diffuse_roughness > 0.0f) || !(b->layered || b->specular_row.count > 0 || b->film_row.count > 0))
         return;
     for (int i = 0; i < TY_MU_NODES; i++)
-        b->diffuse_left[i] = ty_mu_nodes[i].weight * ty_layers_diffuse(b, ty_mu_nodes[i].mu);
+    {
+        ty_rgb left = ty_layers_diffuse_color(b, ty_mu_nodes[i].mu);
+        b->diffuse_left[i] = ty_mu_nodes[i].weight * (left.r + left.g + left.b) * (1.0f / 3.0f);
+    }
     b->diffuse_excess = ty_diffuse_excess(b->diffuse_roughness, b->diffuse_left, mu) -
                         ty_diffuse_excess_mean(b->diffuse_roughness, b->diffuse_left);
     b->excessive = true;
@@ -378,7 +431,7 @@ bool ty_surface_take_interior(ty_bsdf* b, const ty_shading_context* context, con
     const ty_surface_def* s = &b->material->surface;
     float mu = ty_dot(b->wo, b->frame.n);
     bool walks = s->subsurface_evaluate == TY_SUBSURFACE_WALK, traced = context && context->world, left = false;
-    *weight = ty_rgb_scale(ty_layers_tint_one(b, mu), ty_surface_body(b) * b->diffuse_gain);
+    *weight = ty_rgb_scale(ty_rgb_mul(ty_layers_tint_one(b, mu), ty_surface_gain(b)), ty_surface_body(b));
     ty_surface_point exit;
     if (walks && traced)
     {
@@ -406,5 +459,5 @@ bool ty_surface_take_interior(ty_bsdf* b, const ty_shading_context* context, con
 
 ty_rgb ty_surface_eval_exit(const ty_bsdf* b, float mu)
 {
-    return ty_rgb_scale(ty_layers_tint_one(b, mu), ty_layers_diffuse(b, mu));
+    return ty_rgb_mul(ty_layers_tint_one(b, mu), ty_layers_diffuse_color(b, mu));
 }

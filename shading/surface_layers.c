@@ -4,6 +4,7 @@
 #include "diffuse.h"
 #include "loss_table.h"
 #include "surface_private.h"
+#include "thin_film.h"
 
 static float fuzz_albedo(const ty_bsdf* b, float mu)
 {
@@ -37,6 +38,22 @@ float ty_layers_diffuse(const ty_bsdf* b, float mu)
     return ty_max(ty_layers_left(b, mu) - reflected * base_kept(b, mu), 0.0f);
 }
 
+ty_rgb ty_layers_diffuse_color(const ty_bsdf* b, float mu)
+{
+    if (b->film_row.count == 0 || b->inside)
+        return ty_rgb_grey(ty_layers_diffuse(b, mu));
+    ty_rgb film = ty_thin_film_row_at(&b->film_row, mu);
+    float reflected = ty_albedo_row_at(&b->specular_row, mu), left = 1.0f, under = 1.0f;
+    if (b->layered)
+    {
+        left = ty_layers_left(b, mu);
+        under = base_kept(b, mu);
+    }
+    return ty_rgb_make(ty_max(left - (reflected + film.r) * under, 0.0f),
+                       ty_max(left - (reflected + film.g) * under, 0.0f),
+                       ty_max(left - (reflected + film.b) * under, 0.0f));
+}
+
 float ty_layers_metal(const ty_bsdf* b, float mu)
 {
     float lost = ty_loss_row_at(&b->conductor_loss, mu);
@@ -51,6 +68,11 @@ float ty_layers_clear(const ty_bsdf* b, float mu)
     if (!b->layered)
         return lost;
     float left = ty_layers_left(b, mu), reflected = ty_albedo_row_at(&b->specular_row, mu);
+    if (b->film_row.count > 0)
+    {
+        ty_rgb film = ty_thin_film_row_at(&b->film_row, mu);
+        reflected = ty_clamp(reflected + (film.r + film.g + film.b) * (1.0f / 3.0f), 0.0f, 1.0f);
+    }
     if (b->thin)
         reflected = 2.0f * reflected / (1.0f + reflected);
     return left * lost + reflected * ty_max(left - base_kept(b, mu), 0.0f);

@@ -7,16 +7,44 @@
 #include "microfacet.h"
 #include "surface_private.h"
 
-// From within, the inner side of the layers sends back a part of what the boundary lets out.
+// From within, the inner side of the layers sends back a part of what the boundary lets out: of f, the share that
+// reaches the outside all the same.
+static float sent_back(const ty_bsdf* b, float cos_h)
+{
+    if (!b->inside || !(b->coat_weight > 0.0f || b->fuzz_weight > 0.0f))
+        return 0.0f;
+    float outside = ty_safe_sqrt(1.0f - (1.0f - cos_h * cos_h) / (b->eta * b->eta));
+    return 1.0f - ty_layers_left(b, outside);
+}
+
 float ty_surface_boundary(const ty_bsdf* b, float cos_h)
 {
     float f = ty_fresnel_weighted(cos_h, b->eta, b->shine);
-    if (f < 1.0f && b->inside && (b->coat_weight > 0.0f || b->fuzz_weight > 0.0f))
-    {
-        float outside = ty_safe_sqrt(1.0f - (1.0f - cos_h * cos_h) / (b->eta * b->eta));
-        f += (1.0f - f) * (1.0f - ty_layers_left(b, outside));
-    }
-    return f;
+    return f < 1.0f ? f + (1.0f - f) * sent_back(b, cos_h) : f;
+}
+
+// A boundary reflects alike on both sides where light is refracted from one into the other, with a film on it, too.
+static ty_rgb film_boundary(const ty_bsdf* b, float cos_h)
+{
+    float sine_sqr = (1.0f - cos_h * cos_h) / (b->eta * b->eta);
+    if (b->eta < 1.0f && sine_sqr >= 1.0f)
+        return ty_rgb_grey(1.0f);
+    return b->inside ? ty_thin_film_over_dielectric(&b->film, ty_safe_sqrt(1.0f - sine_sqr), 1.0f / b->shine)
+                     : ty_thin_film_over_dielectric(&b->film, cos_h, b->shine);
+}
+
+ty_rgb ty_surface_boundary_color(const ty_bsdf* b, float cos_h)
+{
+    if (!(b->film.weight > 0.0f))
+        return ty_rgb_grey(ty_surface_boundary(b, cos_h));
+    ty_rgb f = film_boundary(b, cos_h);
+    return ty_rgb_lerp(f, ty_rgb_grey(1.0f), sent_back(b, cos_h));
+}
+
+ty_rgb ty_surface_metal(const ty_bsdf* b, float cos_h)
+{
+    ty_rgb f = ty_metal_fresnel(b->color, b->metal_dip, cos_h);
+    return b->film.weight > 0.0f ? ty_thin_film_over_metal(&b->film, cos_h, f) : f;
 }
 
 // All orders of reflection between its sides.
@@ -28,30 +56,30 @@ static float sheet_transmits(float f, float c)
 
 ty_sheet ty_surface_sheet(const ty_bsdf* b, float cos_h)
 {
-    float f = ty_surface_boundary(b, cos_h);
-    ty_rgb c = b->transmission;
-    ty_rgb t = {sheet_transmits(f, c.r), sheet_transmits(f, c.g), sheet_transmits(f, c.b)};
-    return (ty_sheet){.reflected = {f + f * c.r * t.r, f + f * c.g * t.g, f + f * c.b * t.b}, .transmitted = t};
+    ty_rgb f = ty_surface_boundary_color(b, cos_h), c = b->transmission;
+    if (b->film.weight > 0.0f && b->shine == 1.0f) // nothing but the film
+        return (ty_sheet){.reflected = f, .transmitted = {c.r * (1.0f - f.r), c.g * (1.0f - f.g), c.b * (1.0f - f.b)}};
+    ty_rgb t = {sheet_transmits(f.r, c.r), sheet_transmits(f.g, c.g), sheet_transmits(f.b, c.b)};
+    return (ty_sheet){.reflected = {f.r + f.r * c.r * t.r, f.g + f.g * c.g * t.g, f.b + f.b * c.b * t.b},
+                      .transmitted = t};
 }
 
 static ty_rgb dielectric_reflectance(const ty_bsdf* b, float cos_h)
 {
-    float f = ty_surface_boundary(b, cos_h), opaque = ty_surface_diffuse(b);
+    ty_rgb f = ty_surface_boundary_color(b, cos_h);
+    float opaque = ty_surface_diffuse(b);
     if (b->thin && b->transmission_weight > 0.0f)
         return ty_rgb_add(ty_rgb_scale(ty_surface_sheet(b, cos_h).reflected, ty_surface_clear(b)),
-                          ty_rgb_grey(f * opaque));
+                          ty_rgb_scale(f, opaque));
     // From within only the clear share of the base is a boundary.
-    return ty_rgb_grey((1.0f - b->metalness) * (b->inside ? b->transmission_weight : 1.0f) * f);
+    return ty_rgb_scale(f, (1.0f - b->metalness) * (b->inside ? b->transmission_weight : 1.0f));
 }
 
 ty_rgb ty_surface_reflectance(const ty_bsdf* b, float cos_h)
 {
     ty_rgb sum = ty_rgb_mul(b->specular_tint, dielectric_reflectance(b, cos_h));
     if (b->metalness > 0.0f)
-    {
-        ty_rgb metal = ty_metal_fresnel(b->color, b->metal_dip, cos_h);
-        sum = ty_rgb_add(sum, ty_rgb_mul(metal, b->metal));
-    }
+        sum = ty_rgb_add(sum, ty_rgb_mul(ty_surface_metal(b, cos_h), b->metal));
     return sum;
 }
 
@@ -60,13 +88,21 @@ ty_rgb ty_surface_transmittance(const ty_bsdf* b, float cos_h)
 {
     if (b->thin)
         return ty_rgb_scale(ty_surface_sheet(b, cos_h).transmitted, ty_surface_clear(b));
+    if (b->film.weight > 0.0f)
+    {
+        ty_rgb f = film_boundary(b, cos_h), left = {1.0f - f.r, 1.0f - f.g, 1.0f - f.b};
+        return ty_rgb_scale(ty_rgb_mul(b->transmission, left), ty_surface_clear(b));
+    }
     float f = ty_fresnel_weighted(cos_h, b->eta, b->shine);
     return ty_rgb_scale(b->transmission, ty_surface_clear(b) * (1.0f - f));
 }
 
-static float diffuse_coupling(const ty_bsdf* b, float mu_i)
+// factor: what both directions have in common.
+static ty_rgb diffuse_coupling(const ty_bsdf* b, ty_rgb factor, float mu_i)
 {
-    return b->diffuse_gain * ty_layers_diffuse(b, mu_i);
+    if (b->film_row.count == 0)
+        return ty_rgb_scale(factor, b->diffuse_gain * ty_layers_diffuse(b, mu_i));
+    return ty_rgb_mul(factor, ty_rgb_mul(b->film_gain, ty_layers_diffuse_color(b, mu_i)));
 }
 
 bool ty_surface_is_delta(const ty_bsdf* b)
@@ -114,7 +150,6 @@ ty_rgb ty_surface_eval_diffuse(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* 
     *pdf = 0.0f;
     if (!(b->lobe_probability[TY_LOBE_DIFFUSE] > 0.0f) || !(wi.z > 0.0f))
         return ty_rgb_grey(0.0f);
-    float k = diffuse_coupling(b, wi.z) * ty_surface_diffuse(b);
     *pdf = b->lobe_probability[TY_LOBE_DIFFUSE] * wi.z * TY_INV_PI;
     ty_rgb f = ty_diffuse_value(b->diffuse, b->diffuse_roughness, wo, wi);
     if (b->excessive)
@@ -122,7 +157,7 @@ ty_rgb ty_surface_eval_diffuse(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* 
         float excess = b->diffuse_excess + ty_diffuse_excess(b->diffuse_roughness, b->diffuse_left, wi.z);
         f = ty_rgb_add(f, ty_rgb_scale(b->diffuse, -excess * TY_INV_PI));
     }
-    f = ty_rgb_scale(f, k * wi.z);
+    f = diffuse_coupling(b, ty_rgb_scale(f, ty_surface_diffuse(b) * wi.z), wi.z);
     return b->tinted && b->layered ? ty_rgb_mul(f, ty_layers_tint(b, wo.z, wi.z)) : f;
 }
 
@@ -189,8 +224,8 @@ static ty_rgb eval_transmission(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float*
     }
     if (p[TY_LOBE_DIFFUSE_BELOW] > 0.0f)
     {
-        float k = diffuse_coupling(b, -wi.z) * ty_surface_diffuse(b);
-        f = ty_rgb_add(f, ty_rgb_scale(b->diffuse_below, k * -wi.z * TY_INV_PI));
+        ty_rgb below = ty_rgb_scale(b->diffuse_below, ty_surface_diffuse(b) * -wi.z * TY_INV_PI);
+        f = ty_rgb_add(f, diffuse_coupling(b, below, -wi.z));
         *pdf += p[TY_LOBE_DIFFUSE_BELOW] * -wi.z * TY_INV_PI;
     }
     return f;

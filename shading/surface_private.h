@@ -32,8 +32,17 @@ static inline float ty_surface_diffuse(const ty_bsdf* b)
     return (1.0f - b->metalness) * (1.0f - b->transmission_weight) * (1.0f - b->body);
 }
 
-// Share the dielectric boundary reflects at a facet.
+// What light to the diffuse base keeps on wo's side, over its mean.
+static inline ty_rgb ty_surface_gain(const ty_bsdf* b)
+{
+    return b->film_row.count > 0 ? b->film_gain : ty_rgb_grey(b->diffuse_gain);
+}
+
+// Share the dielectric boundary reflects at a facet, where no film is on it; and with one.
 float ty_surface_boundary(const ty_bsdf* bsdf, float cos_h);
+ty_rgb ty_surface_boundary_color(const ty_bsdf* bsdf, float cos_h);
+// Fresnel reflectance of the metal at a facet.
+ty_rgb ty_surface_metal(const ty_bsdf* bsdf, float cos_h);
 // Reflectance of the base's specular lobe at a facet, and transmittance of its clear share.
 ty_rgb ty_surface_reflectance(const ty_bsdf* bsdf, float cos_h);
 ty_rgb ty_surface_transmittance(const ty_bsdf* bsdf, float cos_h);
@@ -54,6 +63,7 @@ ty_sheet ty_surface_sheet(const ty_bsdf* bsdf, float cos_h);
 float ty_layers_left(const ty_bsdf* bsdf, float mu);
 // Of that, what the reflection at the dielectric leaves to the diffuse base, and single facets of the metal to others.
 float ty_layers_diffuse(const ty_bsdf* bsdf, float mu);
+ty_rgb ty_layers_diffuse_color(const ty_bsdf* bsdf, float mu); // with a film
 float ty_layers_metal(const ty_bsdf* bsdf, float mu);
 // What facets of a clear boundary send up late, with what the layers keep too much of its reflection.
 float ty_layers_clear(const ty_bsdf* bsdf, float mu);

@@ -62,6 +62,27 @@ static void make_layers(ty_material* m, const float roughness[2], float shine)
     m->coat_under_fuzz = ty_albedo_table_create_joint(&lower, m->fuzz, fuzz, 1.0f);
 }
 
+// Where index, weight or coat vary, what the film adds is that of their middle.
+static void make_film(ty_material* m, const float roughness[2], const float ior[2], const float weight[2],
+                      const float coat[2])
+{
+    const ty_surface_def* s = &m->surface;
+    float thickness[2];
+    table_range(&s->thin_film_thickness, 0.0f, 1000.0f, thickness);
+    if (!ty_input_is_constant(&s->thin_film_thickness))
+        thickness[1] = ty_min(thickness[1], s->thin_film_thickness.value.r * (fabsf(s->thin_film_thickness.offset) +
+                                                                              fabsf(s->thin_film_thickness.scale)));
+    if (ty_input_is_zero(&s->thin_film_weight) || !(thickness[1] > 0.0f))
+        return;
+    m->film_bands = ty_thin_film_bands_create();
+    if (ty_input_is_constant(&s->base_metalness) && s->base_metalness.value.r >= 1.0f)
+        return;
+    float index = 0.5f * (ior[0] + ior[1]), cover = ty_lerp(1.0f, s->coat_ior, 0.5f * (coat[0] + coat[1]));
+    ty_thin_film film = ty_thin_film_make(m->film_bands, 1.0f, 1.0f, s->thin_film_ior, 1.0f, cover, index);
+    m->film =
+        ty_thin_film_table_create(&film, roughness, thickness, ty_shine(index, 0.5f * (weight[0] + weight[1]), cover));
+}
+
 void ty_surface_make_tables(ty_material* m)
 {
     const ty_surface_def* s = &m->surface;
@@ -77,6 +98,7 @@ void ty_surface_make_tables(ty_material* m)
     shine_range(s, ior, weight, coat, shine);
     m->specular = ty_material_make_table(&s->specular_weight, &s->specular_roughness, shine);
     make_layers(m, roughness, shine[1]);
+    make_film(m, roughness, ior, weight, coat);
     if (roughness[1] < TY_SMOOTH_ROUGHNESS)
         return;
     bool metal = !ty_input_is_zero(&s->base_metalness) && !ty_input_is_zero(&s->specular_weight),

@@ -120,9 +120,9 @@ typedef struct ty_param
 {
     const char* name; // as in YAML
     ty_param_type type;
-    const char* unit;            // "m", "deg" (stored in radians), "mm" (stored in metres), "s", "" ...
-    double minimum, maximum;     // per component, inclusive, in the written unit; both 0 = unbounded
-    const char* const* choices;  // ENUM: names, NULL-terminated
+    const char* unit;           // "m", "deg" (stored in radians), "mm" (stored in metres), "um" (as it is), "s", "" ...
+    double minimum, maximum;    // per component, inclusive, in the written unit; both 0 = unbounded
+    const char* const* choices; // ENUM: names, NULL-terminated
     const ty_param_table* group; // GROUP, BRIEF_GROUP, LIST
     size_t offset;
     const char* help; // one line

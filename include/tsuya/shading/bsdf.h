@@ -49,6 +49,26 @@ typedef struct ty_loss_row
     float spread;  // about proportional to 1 / (mu^2 + spread): how it is sampled
 } ty_loss_row;
 
+// A film that waves of light interfere in, at the point.
+typedef struct ty_thin_film
+{
+    const struct ty_thin_film_bands* bands; // owned by the material
+    float weight;
+    float path;  // micrometres: twice thickness times index
+    float bend;  // sine within over that outside
+    float index; // relative to that of what lies over it
+    bool turned; // beneath is less dense than what covers it
+} ty_thin_film;
+
+// What it adds to the directional albedo of a reflection, by channels: up to four table slices and their weights.
+typedef struct ty_thin_film_row
+{
+    const float* slice[4]; // owned by the material
+    float weight[4];
+    int count;      // 0 = there is no film
+    ty_rgb average; // 2 * integral of it times mu
+} ty_thin_film_row;
+
 typedef struct ty_bsdf
 {
     ty_bsdf_kind kind;
@@ -95,6 +115,10 @@ typedef struct ty_bsdf
     ty_albedo_row fuzz_row; // E of the fuzz
     // The larger of a layer's albedos towards wo and wi, on average over the reflection beneath it.
     ty_albedo_row coat_under_fuzz, base_under_coat, base_under_fuzz;
+
+    ty_thin_film film;         // surface: weight 0 = none
+    ty_thin_film_row film_row; // of the dielectric
+    ty_rgb film_gain;          // as diffuse_gain, by channels, and in its place
 
     // subsurface, and surfaces that come of it
     float body;           // share of what is neither metal nor clear; 0 = no body

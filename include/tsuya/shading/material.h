@@ -45,7 +45,10 @@ typedef struct ty_surface_def
     ty_input coat_darkening; // 0..1: how much of what it reflects back onto the base counts
     ty_input fuzz_weight;
     ty_input fuzz_color;
-    ty_input fuzz_roughness;     // 0..1: how far the fibres stray
+    ty_input fuzz_roughness;      // 0..1: how far the fibres stray
+    ty_input thin_film_weight;    // over metal and dielectric, beneath the coat
+    ty_input thin_film_thickness; // micrometres
+    float thin_film_ior;
     ty_input emission_luminance; // radiance
     ty_input emission_color;
     ty_input opacity;                 // 0..1, geometry_opacity: light passes the rest unbent
