@@ -14,23 +14,34 @@ typedef struct stage
     ty_shading_context context;
 } stage;
 
-// Objects of one shape under the given maps.
-static inline void stage_init(stage* s, const ty_shape_def* shape, const ty_affine* maps, int count)
+// Objects of the stage's mesh under the given maps, closed for light that scatters within or not; without a depth
+// field. Returns the prototype.
+static inline uint32_t stage_place(stage* s, const ty_affine* maps, int count, bool closed)
 {
     ty_error error = {0};
     ty_world_def def = ty_world_def_default();
     uint32_t prototype, object;
-    assert_int_equal(ty_shape_create(shape, &s->mesh, &error), TY_OK);
     assert_int_equal(ty_world_create(&def, &s->world, &error), TY_OK);
     assert_int_equal(ty_world_add_prototype(s->world, s->mesh, &prototype, &error), TY_OK);
     for (int i = 0; i < count; i++)
         assert_int_equal(ty_world_add_object(s->world, prototype, ty_motion_at_rest(&maps[i]),
-                                             (ty_object_flags){true, TY_MASK_OPAQUE}, &object, &error),
+                                             (ty_object_flags){closed, TY_MASK_OPAQUE}, &object, &error),
                          TY_OK);
     assert_int_equal(ty_world_commit(s->world, &error), TY_OK);
+    s->field = NULL;
+    s->context = (ty_shading_context){.world = s->world};
+    return prototype;
+}
+
+// Objects of one shape under the given maps.
+static inline void stage_init(stage* s, const ty_shape_def* shape, const ty_affine* maps, int count)
+{
+    ty_error error = {0};
+    assert_int_equal(ty_shape_create(shape, &s->mesh, &error), TY_OK);
+    uint32_t prototype = stage_place(s, maps, count, true);
     assert_int_equal(ty_depth_field_create(s->world, prototype, &s->field, &error), TY_OK);
     s->fields[0] = s->field;
-    s->context = (ty_shading_context){.world = s->world, .depth_fields = s->fields};
+    s->context.depth_fields = s->fields;
 }
 
 static inline void stage_init_one(stage* s, const ty_shape_def* shape)

@@ -508,17 +508,8 @@ static void test_glass_ball_vanishes(void** state)
     ty_shape_def sphere = shape_of(TY_SHAPE_SPHERE, 1e-2f, 0, 0);
     ty_affine identity = ty_affine_identity();
     ty_error error;
-    uint32_t prototype, object;
     assert_int_equal(ty_shape_create(&sphere, &s.mesh, &error), TY_OK);
-    ty_world_def def = ty_world_def_default();
-    assert_int_equal(ty_world_create(&def, &s.world, &error), TY_OK);
-    assert_int_equal(ty_world_add_prototype(s.world, s.mesh, &prototype, &error), TY_OK);
-    assert_int_equal(ty_world_add_object(s.world, prototype, ty_motion_at_rest(&identity),
-                                         (ty_object_flags){false, TY_MASK_OPAQUE}, &object, &error),
-                     TY_OK);
-    assert_int_equal(ty_world_commit(s.world, &error), TY_OK);
-    s.field = NULL;
-    s.context = (ty_shading_context){.world = s.world};
+    stage_place(&s, &identity, 1, false);
     ty_surface_def g = ty_surface_def_default();
     g.transmission_weight = ty_input_scalar(1);
     g.specular_roughness = ty_input_scalar(0);

@@ -414,28 +414,20 @@ static void test_open_mesh(void** state)
     ty_shape_def shape = shape_of(TY_SHAPE_SPHERE, radius, 0, 0);
     stage s;
     ty_error error = {0};
-    ty_world_def def = ty_world_def_default();
     ty_affine identity = ty_affine_identity();
-    uint32_t prototype, object;
     assert_int_equal(ty_shape_create(&shape, &s.mesh, &error), TY_OK);
     uint32_t kept = 0;
     for (uint32_t i = 0; i < s.mesh->triangle_count; i++)
         if (s.mesh->positions[s.mesh->triangles[i][0]].y > -0.5f * radius)
             memcpy(s.mesh->triangles[kept++], s.mesh->triangles[i], sizeof s.mesh->triangles[i]);
     s.mesh->triangle_count = kept;
-    assert_int_equal(ty_world_create(&def, &s.world, &error), TY_OK);
-    assert_int_equal(ty_world_add_prototype(s.world, s.mesh, &prototype, &error), TY_OK);
-    assert_int_equal(ty_world_add_object(s.world, prototype, ty_motion_at_rest(&identity),
-                                         (ty_object_flags){false, TY_MASK_OPAQUE}, &object, &error),
-                     TY_OK);
-    assert_int_equal(ty_world_commit(s.world, &error), TY_OK);
+    stage_place(&s, &identity, 1, false);
     ty_surface_point x = seen(&s, ty_vec3_make(0, 0.01f, 0), ty_vec3_make(0, -1, 0));
     ty_scattering m = matter(radius / 2, 1, 0);
     tally t = run(&s, &x, &m, 20000);
     assert_true(t.lost > 1000 && t.cut == 0);
     assert_near(t.g + t.lost / 20000.0, 1, 1e-6);
-    ty_world_destroy(s.world);
-    ty_mesh_destroy(s.mesh);
+    stage_term(&s);
 }
 
 int main(void)
