@@ -67,6 +67,23 @@ static void read_extras(const json_t* root, ty_aggregate* a)
     a->metrics = json_is_object(metrics) ? ty_json_text(metrics) : NULL;
 }
 
+// A prototype of one material has a slot of that name.
+static void read_slots(const json_t* root, ty_aggregate* a)
+{
+    const json_t *meshes = json_object_get(root, "meshes"), *materials = json_object_get(root, "materials");
+    for (int i = 0; i < a->prototype_count; i++)
+    {
+        const json_t* primitives = json_object_get(json_array_get(meshes, (size_t)i), "primitives");
+        const json_t* material = json_object_get(json_array_get(primitives, 0), "material");
+        if (json_array_size(primitives) != 1 || !json_is_integer(material) || json_integer_value(material) < 0)
+            continue;
+        const json_t* found = json_array_get(materials, (size_t)json_integer_value(material));
+        const char* name = json_string_value(json_object_get(found, "name"));
+        if (name && name[0])
+            (void)ty_mesh_add_slot(a->prototypes[i], name); // the first of the mesh
+    }
+}
+
 static ty_status read_glb(const char* path, const ty_bytes* bytes, ty_aggregate** out, ty_error* error)
 {
     ty_glb glb;
@@ -86,7 +103,10 @@ static ty_status read_glb(const char* path, const ty_bytes* bytes, ty_aggregate*
         ty_bytes_term(&sent);
     }
     if (status == TY_OK)
+    {
         read_extras(root, *out);
+        read_slots(root, *out);
+    }
     json_decref(root);
     return status;
 }

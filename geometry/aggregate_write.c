@@ -125,7 +125,18 @@ static void add_curvature(ty_glb_builder* builder, json_t* attributes, const ty_
         set_semantic(attributes, "direction", ty_glb_add(builder, mesh->direction_1, n, TY_GLTF_FLOAT, 3, VERTICES));
 }
 
-static json_t* add_mesh(ty_glb_builder* builder, const ty_mesh* mesh, int index)
+// The number of a material of that name, added when there is none.
+static int find_material(json_t* materials, const char* name)
+{
+    int count = (int)json_array_size(materials);
+    for (int i = 0; i < count; i++)
+        if (strcmp(json_string_value(json_object_get(json_array_get(materials, (size_t)i), "name")), name) == 0)
+            return i;
+    json_array_append_new(materials, json_pack("{s:s}", "name", name));
+    return count;
+}
+
+static json_t* add_mesh(ty_glb_builder* builder, const ty_mesh* mesh, int index, json_t* materials)
 {
     uint32_t n = mesh->vertex_count;
     int position = ty_glb_add(builder, mesh->positions, n, TY_GLTF_FLOAT, 3, VERTICES);
@@ -146,8 +157,10 @@ static json_t* add_mesh(ty_glb_builder* builder, const ty_mesh* mesh, int index)
         ty_glb_add(builder, mesh->triangles, 3 * (size_t)mesh->triangle_count, TY_GLTF_UNSIGNED_INT, 1, INDICES);
     char name[32];
     snprintf(name, sizeof name, "prototype_%d", index);
-    return json_pack("{s:s, s:[{s:o, s:i, s:i}]}", "name", name, "primitives", "attributes", attributes, "indices",
-                     indices, "mode", 4);
+    json_t* primitive = json_pack("{s:o, s:i, s:i}", "attributes", attributes, "indices", indices, "mode", 4);
+    if (mesh->slot_count == 1 && mesh->slot_names[0][0])
+        json_object_set_new(primitive, "material", json_integer(find_material(materials, mesh->slot_names[0])));
+    return json_pack("{s:s, s:[o]}", "name", name, "primitives", primitive);
 }
 
 // --- instances ---
@@ -304,10 +317,13 @@ ty_status ty_aggregate_write(const char* path, const ty_aggregate* aggregate, ty
     {
         ty_glb_builder builder;
         ty_glb_builder_init(&builder);
-        json_t* meshes = json_array();
+        json_t *meshes = json_array(), *materials = json_array();
         for (int p = 0; p < aggregate->prototype_count; p++)
-            json_array_append_new(meshes, add_mesh(&builder, aggregate->prototypes[p], p));
+            json_array_append_new(meshes, add_mesh(&builder, aggregate->prototypes[p], p, materials));
         json_object_set_new(root, "meshes", meshes);
+        if (json_array_size(materials) > 0)
+            json_object_set(root, "materials", materials);
+        json_decref(materials);
         add_nodes(&builder, aggregate, root);
         status = ty_glb_write(&builder, root, path, error);
         ty_glb_builder_term(&builder);

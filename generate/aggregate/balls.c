@@ -112,6 +112,7 @@ static float capsule_radius(const ty_ball* balls)
 
 void ty_balls_fit(const ty_vec3* points, uint32_t count, ty_vec3 half_size, float bend, ty_grain* grain)
 {
+    grain->ball_count = TY_GRAIN_BALLS;
     balls_start(half_size, bend, grain->balls);
     for (int i = 0; i < FIT_ROUNDS; i++)
         fit_round(points, count, grain->balls);

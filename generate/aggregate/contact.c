@@ -158,11 +158,13 @@ static void touches_find(ty_pile* pile, int a, int b, float margin)
         return;
     const ty_body* other = &pile->bodies[b];
     float radius = pile->def.grains[other->grain].radius * other->scale * pile->growth + margin;
-    for (int i = 0; i < TY_GRAIN_BALLS; i++)
+    const int of_a = pile->def.grains[pile->bodies[a].grain].ball_count;
+    const int of_b = pile->def.grains[other->grain].ball_count;
+    for (int i = 0; i < of_a; i++)
     {
         if (ty_length_sqr(ty_sub(p[i].center, other->position)) > ty_sqr(radius + p[i].radius))
             continue;
-        for (int k = 0; k < TY_GRAIN_BALLS; k++)
+        for (int k = 0; k < of_b; k++)
             if (ty_length_sqr(ty_sub(p[i].center, q[k].center)) < ty_sqr(p[i].radius + q[k].radius + margin))
                 touch_push(pile, i, k);
     }
@@ -201,7 +203,8 @@ static void walls_find(ty_pile* pile)
         int first = pile->touch_count;
         const ty_ball* balls = pile_balls(pile, i);
         float margin = pile->poses[i].reach;
-        for (int k = 0; k < TY_GRAIN_BALLS; k++)
+        const int ball_count = pile->def.grains[pile->bodies[i].grain].ball_count;
+        for (int k = 0; k < ball_count; k++)
         {
             ty_vec3 n;
             for (int w = 0; w < walls; w++)

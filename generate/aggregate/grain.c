@@ -20,7 +20,15 @@ typedef struct shape
 
 ty_grain_def ty_grain_def_default(void)
 {
-    return (ty_grain_def){TY_GRAIN_RICE, 7.2e-3f, 3.0e-3f, 2.5e-3f, 0.06f, 16, 0.15f, 9};
+    return (ty_grain_def){.kind = TY_GRAIN_RICE,
+                          .length = 7.2e-3f,
+                          .width = 3.0e-3f,
+                          .thickness = 2.5e-3f,
+                          .variation = 0.06f,
+                          .variants = 16,
+                          .notch = 0.15f,
+                          .divisions = 9,
+                          .roe = {.lean = TY_PI / 4.0f, .press = 0.012f}};
 }
 
 float ty_grain_bell(ty_rng* rng)

@@ -2,6 +2,7 @@
 // Makes an aggregate from its recipe: fill, settle, take away what is too much, polish until nothing floats, write
 // down.
 #include "fill.h"
+#include "roe.h"
 #include <string.h>
 #include <tsuya/base/log.h>
 
@@ -14,7 +15,7 @@ enum
 
 typedef struct kit
 {
-    const ty_aggregate_recipe* recipe;
+    const ty_aggregate_recipe* recipe; // complete
     ty_workers* workers;
     ty_grain grains[TY_GRAIN_MAX_VARIANTS];
     int grain_count;
@@ -41,7 +42,9 @@ static ty_quat rotation_draw(const ty_fill_def* fill, float steepest, ty_rng* rn
 static ty_body body_draw(kit* k, ty_vec3 position, float steepest)
 {
     ty_body body = {.position = position, .rotation = rotation_draw(&k->recipe->fill, steepest, &k->rng)};
-    body.scale = 1.0f + ty_clamp(0.3f * k->recipe->element.variation * ty_grain_bell(&k->rng), -0.1f, 0.1f);
+    const ty_grain_def* element = &k->recipe->element; // meshes of grains differ in size already
+    float spread = element->kind == TY_GRAIN_RICE ? 0.3f : 1.0f, most = element->kind == TY_GRAIN_RICE ? 0.1f : 0.3f;
+    body.scale = 1.0f + ty_clamp(spread * element->variation * ty_grain_bell(&k->rng), -most, most);
     body.grain = ty_rng_u32(&k->rng) % (uint32_t)k->grain_count;
     return body;
 }
@@ -92,7 +95,10 @@ static ty_status grains_make(kit* k, ty_error* error)
     for (; k->grain_count < k->recipe->element.variants; k->grain_count++)
     {
         ty_grain* grain = &k->grains[k->grain_count];
-        ty_status status = ty_grain_init(&k->recipe->element, k->recipe->seed, k->grain_count, grain, error);
+        const ty_grain_def* element = &k->recipe->element;
+        ty_status status = element->kind == TY_GRAIN_ROE
+                               ? ty_roe_init(element, grain, error)
+                               : ty_grain_init(element, k->recipe->seed, k->grain_count, grain, error);
         if (status != TY_OK)
             return status;
         k->volume += grain->volume / (float)k->recipe->element.variants;
@@ -259,13 +265,20 @@ static void attributes_write(const kit* k, ty_aggregate* out)
     float* depth = ty_aggregate_add_attribute(out, "depth");
     ty_pile_depth(k->pile, depth);
     const ty_wetness_def* wet = &k->recipe->moisture;
-    for (uint32_t i = 0; i < out->instance_count; i++)
+    uint32_t count = (uint32_t)ty_pile_count(k->pile);
+    for (uint32_t i = 0; i < count; i++)
     {
         ty_rng rng = ty_rng_make(k->recipe->seed, 0x6d6f6973, i);
         float exposed = ty_exp(-depth[i] / k->recipe->element.length);
         float m = 0.45f * wet->variation * ty_grain_bell(&rng) + wet->drying * (0.35f - exposed);
         moisture[i] = ty_clamp(m, -1.0f, 1.0f);
         tint[i] = ty_clamp(0.5f * ty_grain_bell(&rng), -1.0f, 1.0f);
+    }
+    for (uint32_t i = count; i < out->instance_count; i++) // further bodies of the same elements
+    {
+        moisture[i] = moisture[i - count];
+        tint[i] = tint[i - count];
+        depth[i] = depth[i - count];
     }
 }
 
@@ -281,18 +294,16 @@ static char* metrics_write(const kit* k, const ty_pile_metrics* m)
                             (double)k->top.crown * 1e3);
 }
 
-static ty_status result_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error)
+static ty_aggregate* grains_write(kit* k, const ty_body* bodies, uint32_t count)
 {
-    uint32_t count = (uint32_t)ty_pile_count(k->pile);
     ty_aggregate* a = ty_aggregate_create(count, k->grain_count);
     if (!a)
-        return ty_error_set(error, TY_NO_MEMORY, "no memory for %u grains", count);
+        return NULL;
     for (int i = 0; i < k->grain_count; i++)
     {
         a->prototypes[i] = k->grains[i].mesh;
         k->grains[i].mesh = NULL; // now the aggregate's
     }
-    const ty_body* bodies = ty_pile_bodies(k->pile);
     for (uint32_t i = 0; i < count; i++)
     {
         const ty_body* b = &bodies[i];
@@ -300,6 +311,18 @@ static ty_status result_write(kit* k, const ty_pile_metrics* metrics, ty_aggrega
         a->prototype_index[i] = b->grain;
         a->ids[i] = i;
     }
+    return a;
+}
+
+static ty_status result_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error)
+{
+    uint32_t count = (uint32_t)ty_pile_count(k->pile);
+    const ty_body* bodies = ty_pile_bodies(k->pile);
+    const ty_aggregate_recipe* r = k->recipe;
+    ty_aggregate* a = r->element.kind == TY_GRAIN_ROE ? ty_roe_write(&r->element, r->seed, &k->grains[0], bodies, count)
+                                                      : grains_write(k, bodies, count);
+    if (!a)
+        return ty_error_set(error, TY_NO_MEMORY, "no memory for %u grains", count);
     attributes_write(k, a);
     a->metrics = metrics_write(k, metrics);
     *out = a;
@@ -349,14 +372,16 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
 ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate** out, ty_error* error)
 {
     *out = NULL;
-    const ty_aggregate_recipe* recipe = def;
-    ty_status status = recipe_check(recipe, error);
+    ty_aggregate_recipe recipe = *(const ty_aggregate_recipe*)def;
+    ty_status status = recipe.element.kind == TY_GRAIN_ROE ? ty_roe_complete(&recipe.element, error) : TY_OK;
+    if (status == TY_OK)
+        status = recipe_check(&recipe, error);
     if (status != TY_OK)
         return status;
     kit* k = TY_ALLOC(kit, 1);
-    k->recipe = recipe;
+    k->recipe = &recipe;
     k->workers = workers;
-    k->rng = ty_rng_make(recipe->seed, 0x626f6479, 0);
+    k->rng = ty_rng_make(recipe.seed, 0x626f6479, 0);
     status = kit_make(k, out, error);
     ty_pile_destroy(k->pile);
     ty_container_destroy(k->container);

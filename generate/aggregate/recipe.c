@@ -28,7 +28,36 @@ ty_aggregate_recipe ty_aggregate_recipe_default(void)
 
 // --- element ---
 
-static const char* const grain_kinds[] = {"rice", NULL};
+static const char* const grain_kinds[] = {"rice", "roe", NULL};
+static const char* const roe_presets[] = {"ikura", "tobiko", "tarako", "kazunoko", NULL};
+
+static void roe_set_default(void* def)
+{
+    *(ty_roe_def*)def = ty_grain_def_default().roe;
+}
+
+#define OWNER ty_roe_def
+static const ty_param roe_rows[] = {
+    {"preset", TY_PARAM_ENUM, "", 0, 0, roe_presets, NULL, offsetof(OWNER, preset),
+     "eggs of salmon, flying fish, pollock or herring", false},
+    FIELD("diameter", TY_PARAM_FLOAT, "mm", 0, 50, diameter, "mean of the eggs, from 0.2; 0 = of the preset"),
+    FIELD("membrane", TY_PARAM_FLOAT, "mm", 0, 5, membrane,
+          "thickness, a thousandth to a tenth of the diameter; 0 = of the preset"),
+    FIELD("yolk", TY_PARAM_FLOAT, "", 0, 0.5, yolk, "its share of what is within the membrane; 0 = of the preset"),
+    FIELD("lean", TY_PARAM_FLOAT, "deg", 0, 180, lean, "largest angle of the yolk off the top, where it floats"),
+    FIELD("press", TY_PARAM_FLOAT, "", 0, 0.05, press,
+          "how much farther eggs reach than they were packed, so that they meet in small discs"),
+};
+#undef OWNER
+
+static const ty_param_table roe_table = {
+    "aggregate.element.roe",
+    "An egg of fish: a membrane, white in it, a yolk that floats in the white. Each is a body of its own, with the "
+    "material slots membrane, white and yolk.",
+    sizeof(ty_roe_def),
+    roe_set_default,
+    roe_rows,
+    TY_PARAM_COUNT(roe_rows)};
 
 static void grain_set_default(void* def)
 {
@@ -37,7 +66,8 @@ static void grain_set_default(void* def)
 
 #define OWNER ty_grain_def
 static const ty_param grain_rows[] = {
-    {"kind", TY_PARAM_ENUM, "", 0, 0, grain_kinds, NULL, offsetof(OWNER, kind), "what one element is", false},
+    {"kind", TY_PARAM_ENUM, "", 0, 0, grain_kinds, NULL, offsetof(OWNER, kind),
+     "what one element is; all below but the variation is of rice", false},
     FIELD("length", TY_PARAM_FLOAT, "mm", 0.2, 100, length, "mean length"),
     FIELD("width", TY_PARAM_FLOAT, "mm", 0.1, 100, width, "mean width, at most the length"),
     FIELD("thickness", TY_PARAM_FLOAT, "mm", 0.05, 100, thickness, "mean thickness, from half the width to the width"),
@@ -45,6 +75,7 @@ static const ty_param grain_rows[] = {
     FIELD("variants", TY_PARAM_INT, "", 1, TY_GRAIN_MAX_VARIANTS, variants, "how many different meshes are made"),
     FIELD("notch", TY_PARAM_FLOAT, "", 0, 0.3, notch, "depth of the germ's dent, of the width"),
     FIELD("divisions", TY_PARAM_INT, "", 4, 64, divisions, "cells across the width of a mesh"),
+    {"roe", TY_PARAM_GROUP, "", 0, 0, NULL, &roe_table, offsetof(OWNER, roe), "with kind roe: the egg", false},
 };
 #undef OWNER
 

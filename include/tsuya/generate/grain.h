@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One element of an aggregate: its surface as a closed mesh, and the balls that stand for it in packing and contact.
+// One element of an aggregate: its surface as closed meshes, and the balls that stand for it in packing and contact.
 #pragma once
 #include <tsuya/base/params.h>
 #include <tsuya/base/rng.h>
@@ -8,18 +8,38 @@
 
 enum
 {
-    TY_GRAIN_BALLS = 10, // per grain: two rows, so that an elliptical section is met
+    TY_GRAIN_BALLS = 10, // per grain at most: two rows, so that an elliptical section is met
     TY_GRAIN_MAX_VARIANTS = 64,
 };
 
 typedef enum ty_grain_kind
 {
     TY_GRAIN_RICE,
+    TY_GRAIN_ROE, // a fish's egg: membrane, white and yolk, clear bodies in one another
 } ty_grain_kind;
+
+typedef enum ty_roe_preset
+{
+    TY_ROE_IKURA,    // salmon
+    TY_ROE_TOBIKO,   // flying fish
+    TY_ROE_TARAKO,   // pollock
+    TY_ROE_KAZUNOKO, // herring
+} ty_roe_preset;
+
+// An egg. Sizes of 0 are those of the preset; ty_roe_complete puts them in.
+typedef struct ty_roe_def
+{
+    int preset;     // ty_roe_preset
+    float diameter; // m, mean
+    float membrane; // m, its thickness
+    float yolk;     // share of the volume within the membrane, 0..0.5
+    float lean;     // rad, largest angle of the yolk off the top, 0..pi
+    float press; // how much farther eggs reach than they are packed, relative, 0..0.05: they flatten where they touch
+} ty_roe_def;
 
 typedef struct ty_grain_def
 {
-    int kind;        // ty_grain_kind
+    int kind;        // ty_grain_kind; what follows is of rice, but for the variation
     float length;    // m, along x
     float width;     // m, along y; <= length
     float thickness; // m, along z; half the width .. the width
@@ -27,6 +47,7 @@ typedef struct ty_grain_def
     int variants;    // different meshes, 1..TY_GRAIN_MAX_VARIANTS
     float notch;     // depth of the germ's dent, of the width, 0..0.3
     int divisions;   // cells across the width, 4..64; triangles = 4 (2 n d + d^2), n = round(d length / width)
+    ty_roe_def roe;
 } ty_grain_def;
 
 ty_grain_def ty_grain_def_default(void); // cooked japonica rice
@@ -41,8 +62,9 @@ typedef struct ty_ball
 // Lengths in metres; the origin is the centre of mass of the solid of even density.
 typedef struct ty_grain
 {
-    ty_mesh* mesh; // owned; closed, outward, with welds, normals, curvature and bounds
-    ty_ball balls[TY_GRAIN_BALLS];
+    ty_mesh* mesh;                 // owned; closed, outward, with welds, normals, curvature and bounds
+    ty_ball balls[TY_GRAIN_BALLS]; // of fewer, the rest are as the last one
+    int ball_count;
     float volume;             // m^3, of the mesh
     float inverse_inertia[6]; // per unit mass, 1/m^2: xx yy zz xy xz yz, body frame
     float radius;             // m, about the origin, of mesh and balls

@@ -32,7 +32,8 @@ float* ty_aggregate_add_attribute(ty_aggregate* aggregate, const char* name);   
 const ty_instance_attribute* ty_aggregate_find_attribute(const ty_aggregate* aggregate, const char* name);
 
 // TRANSLATION, ROTATION, SCALE (and _MATRIX0..2 where an instance is sheared), _ID, every attribute as _NAME; one node
-// a prototype; recipe, hash and metrics in the asset's extras. Equal input, equal bytes. Atomic.
+// a prototype; recipe, hash and metrics in the asset's extras. A prototype's slot, where it has one, is a material of
+// that name. Equal input, equal bytes. Atomic.
 TY_CHECKED ty_status ty_aggregate_write(const char* path, const ty_aggregate* aggregate, ty_error* error);
 
 // Reads GLB in a child process after our own header checks; also PLY points (x y z, orient, pscale, scalar attributes)

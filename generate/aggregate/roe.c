@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Roe: eggs of a mean size packed as balls, each a membrane with white in it and a yolk that floats in the white.
+#include "roe.h"
+#include <string.h>
+
+// Sizes are our estimates of ripe eggs, the lipid share of salmon as published for a model of its eggs.
+static const ty_roe_def presets[] = {
+    [TY_ROE_IKURA] = {.diameter = 6.2e-3f, .membrane = 53e-6f, .yolk = 0.145f},
+    [TY_ROE_TOBIKO] = {.diameter = 1.6e-3f, .membrane = 20e-6f, .yolk = 0.05f},
+    [TY_ROE_TARAKO] = {.diameter = 1.0e-3f, .membrane = 15e-6f, .yolk = 0.05f},
+    [TY_ROE_KAZUNOKO] = {.diameter = 1.4e-3f, .membrane = 30e-6f, .yolk = 0.1f},
+};
+
+ty_status ty_roe_complete(ty_grain_def* def, ty_error* error)
+{
+    ty_roe_def* roe = &def->roe;
+    const ty_roe_def* preset = &presets[roe->preset];
+    if (roe->diameter == 0.0f)
+        roe->diameter = preset->diameter;
+    if (roe->membrane == 0.0f)
+        roe->membrane = preset->membrane * roe->diameter / preset->diameter;
+    if (roe->yolk == 0.0f)
+        roe->yolk = preset->yolk;
+    const double mm = 1e3;
+    double diameter = (double)roe->diameter * mm, membrane = (double)roe->membrane * mm;
+    if (!(diameter >= 0.2 && diameter <= 50.0))
+        return ty_error_set(error, TY_BAD_INPUT,
+                            "element.roe.diameter: %g mm; it lies in 0.2..50, or is 0 (the preset's)", diameter);
+    if (!(membrane >= 0.001 * diameter && membrane <= 0.1 * diameter))
+        return ty_error_set(error, TY_BAD_INPUT,
+                            "element.roe.membrane: %g mm; with a diameter of %g mm it lies in %g..%g, or is 0 (the "
+                            "preset's)",
+                            membrane, diameter, 0.001 * diameter, 0.1 * diameter);
+    def->length = def->width = def->thickness = roe->diameter;
+    def->variants = 1;
+    return TY_OK;
+}
+
+ty_status ty_roe_init(const ty_grain_def* def, ty_grain* out, ty_error* error)
+{
+    memset(out, 0, sizeof *out);
+    ty_shape_def shape = ty_shape_def_default();
+    shape.kind = TY_SHAPE_SPHERE;
+    shape.radius = 0.5f * def->roe.diameter;
+    shape.divisions = 128;
+    ty_status status = ty_shape_create(&shape, &out->mesh, error);
+    if (status != TY_OK)
+        return status;
+    (void)ty_mesh_add_slot(out->mesh, "membrane");
+    float r = shape.radius;
+    out->radius = out->capsule = r;
+    out->width = 2.0f * r;
+    out->volume = 4.0f / 3.0f * TY_PI * r * r * r;
+    for (int i = 0; i < 3; i++)
+        out->inverse_inertia[i] = 2.5f / (r * r); // a solid ball's
+    out->ball_count = 1;
+    for (int i = 0; i < TY_GRAIN_BALLS; i++)
+        out->balls[i].radius = r;
+    return TY_OK;
+}
+
+static ty_mesh* body_mesh(const ty_mesh* membrane, const char* slot)
+{
+    ty_mesh* mesh = ty_mesh_copy(membrane);
+    ty_free(mesh->slot_names[0]);
+    mesh->slot_names[0] = ty_string_copy(slot);
+    return mesh;
+}
+
+// From an upright egg to where it lies: turned about the vertical, leaning, a little lower than it is wide.
+static ty_affine egg_frame(const ty_grain_def* def, const ty_body* body, ty_rng* rng)
+{
+    float turn = ty_rng_range(rng, 0.0f, 2.0f * TY_PI), sine, cosine;
+    ty_sincos(ty_rng_range(rng, 0.0f, 2.0f * TY_PI), &sine, &cosine);
+    float lean = def->roe.lean * sqrtf(ty_rng_float(rng)); // about even over the cap
+    ty_quat upright = ty_quat_axis_angle(ty_vec3_make(0.0f, 1.0f, 0.0f), turn);
+    ty_quat leaning = ty_quat_axis_angle(ty_vec3_make(cosine, 0.0f, sine), lean);
+    float flat = ty_clamp(0.2f * def->variation * ty_grain_bell(rng), -0.03f, 0.03f);
+    float size = body->scale * (1.0f + def->roe.press);
+    ty_vec3 scale = {size * (1.0f + 0.5f * flat), size * (1.0f - flat), size * (1.0f + 0.5f * flat)};
+    return ty_affine_from_trs(body->position, ty_quat_multiply(leaning, upright), scale);
+}
+
+static ty_affine shrunk(const ty_affine* frame, float share, float lift)
+{
+    ty_affine m = *frame;
+    m.t = ty_mad(frame->t, frame->y, lift);
+    m.x = ty_mul(frame->x, share);
+    m.y = ty_mul(frame->y, share);
+    m.z = ty_mul(frame->z, share);
+    return m;
+}
+
+// The membrane has one thickness whatever the size of the egg. The yolk is the lipid's ball (radius r_i L^(1/3)) and
+// floats against the membrane but for a hair, so that the two meshes do not cut one another.
+static void egg_write(const ty_grain_def* def, const ty_body* body, uint32_t egg, ty_rng* rng, ty_aggregate* out)
+{
+    const float hair = 0.006f;
+    uint32_t count = out->instance_count / TY_ROE_BODIES;
+    ty_affine frame = egg_frame(def, body, rng);
+    float r = 0.5f * def->roe.diameter, white = 1.0f - def->roe.membrane / (r * body->scale);
+    float yolk = ty_exp(ty_ln(def->roe.yolk) / 3.0f);
+    out->transforms[egg] = frame;
+    out->transforms[egg + count] = shrunk(&frame, white, 0.0f);
+    out->transforms[egg + 2 * count] = shrunk(&frame, white * yolk, white * (1.0f - yolk - hair) * r);
+}
+
+ty_aggregate* ty_roe_write(const ty_grain_def* def, ty_seed seed, ty_grain* egg, const ty_body* bodies, uint32_t count)
+{
+    ty_aggregate* a = ty_aggregate_create(TY_ROE_BODIES * count, TY_ROE_BODIES);
+    if (!a)
+        return NULL;
+    a->prototypes[1] = body_mesh(egg->mesh, "white");
+    a->prototypes[2] = body_mesh(egg->mesh, "yolk");
+    a->prototypes[0] = egg->mesh;
+    egg->mesh = NULL; // now the aggregate's
+    for (uint32_t i = 0; i < a->instance_count; i++)
+    {
+        a->prototype_index[i] = i / count;
+        a->ids[i] = i;
+    }
+    for (uint32_t i = 0; i < count; i++)
+    {
+        ty_rng rng = ty_rng_make(seed, 0x726f65, i);
+        egg_write(def, &bodies[i], i, &rng, a);
+    }
+    return a;
+}
