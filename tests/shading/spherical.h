@@ -152,13 +152,14 @@ static inline ty_material* surface(const ty_surface_def* def)
     return m;
 }
 
-// Power that goes from one direction to the other is the same both ways; across: through the boundary of index 1.5.
-static inline void check_reciprocal(const ty_surface_def* def, bool across)
+// Power that goes from one direction to the other is the same both ways; across: through the boundary, below which
+// there is that index.
+static inline void check_reciprocal(const ty_surface_def* def, bool across, float index)
 {
     ty_material* m = surface(def);
     ty_surface_point p = {.ng = {0, 0, 1}, .ns = {0, 0, 1}};
     ty_rng rng = ty_rng_make((ty_seed){9}, 0, 0);
-    float scale = across ? 1.5f * 1.5f : 1.0f; // radiance over squared index: carried n^2 times denser on that side
+    float scale = across ? index * index : 1.0f; // radiance is n^2 times denser there
     for (int i = 0; i < 2000; i++)
     {
         ty_vec3 w[2];

@@ -310,34 +310,6 @@ static void test_sampling(void** state)
         }
 }
 
-static void check_reciprocal(const ty_surface_def* def, bool across, float index)
-{
-    ty_material* m = surface(def);
-    ty_surface_point p = {.ng = {0, 0, 1}, .ns = {0, 0, 1}};
-    ty_rng rng = ty_rng_make((ty_seed){9}, 0, 0);
-    float scale = across ? index * index : 1.0f;
-    for (int i = 0; i < 1000; i++)
-    {
-        ty_vec3 w[2];
-        ty_bsdf b[2];
-        float pdf;
-        for (int k = 0; k < 2; k++)
-        {
-            float ux = ty_rng_float(&rng);
-            w[k] = ty_sample_cosine((ty_vec2){ux, ty_rng_float(&rng)});
-            w[k].z = ty_max(w[k].z, 0.05f) * (k && across ? -1.0f : 1.0f);
-            w[k] = ty_normalize(w[k]);
-            ty_material_prepare(m, NULL, &p, w[k], &b[k]);
-        }
-        ty_rgb f = ty_rgb_scale(ty_bsdf_eval(&b[0], w[1], &pdf), 1.0f / fabsf(w[1].z));
-        ty_rgb g = ty_rgb_scale(ty_bsdf_eval(&b[1], w[0], &pdf), scale / fabsf(w[0].z));
-        assert_near(f.r, (double)g.r, 2e-3 * (double)g.r + 1e-5);
-        assert_near(f.g, (double)g.g, 2e-3 * (double)g.g + 1e-5);
-        assert_near(f.b, (double)g.b, 2e-3 * (double)g.b + 1e-5);
-    }
-    ty_material_destroy(m);
-}
-
 static void test_reciprocity(void** state)
 {
     (void)state;

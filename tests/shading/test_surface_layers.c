@@ -160,10 +160,10 @@ static void test_reciprocity(void** state)
 {
     (void)state;
     ty_surface_def d = coloured();
-    check_reciprocal(&d, false);
+    check_reciprocal(&d, false, 1);
     d.base_metalness = ty_input_scalar(0);
     d.transmission_weight = ty_input_scalar(1);
-    check_reciprocal(&d, true);
+    check_reciprocal(&d, true, 1.5f);
 }
 
 // The reflection of a smooth metal straight on is its base colour, and at 82 degrees Schlick's times specular_color.
