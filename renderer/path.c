@@ -32,6 +32,8 @@ static bool go_on(const ty_integrator* in, const ty_bsdf* bsdf, const ty_bsdf_sa
     if (p->at_boundary && sample->transmitted)
         ty_media_cross(&p->media, &p->body, p->entering);
     ty_bsdf_spawn(bsdf, sample->wi, u, &p->ray);
+    if (in->has_media)
+        ty_path_keep_way(&bsdf->point, p);
     ty_cone_scatter(in, bsdf, sample, &p->cone);
     p->ray.mask = sample->kind;
     ty_path_turn(in, bsdf, sample, &p->view);
@@ -193,6 +195,7 @@ static void arrive(const ty_integrator* in, float distance, ty_path* p)
     if (!in->has_media)
         return;
     p->absorption[0] = p->absorption[1] = p->view.absorption;
+    distance += p->lead;
     const ty_medium* top = ty_media_top(&p->media);
     if (top && !ty_rgb_is_black(top->matter.albedo))
         ty_flight_pass(&top->matter, distance, &p->beta);
@@ -278,6 +281,8 @@ static bool find_surface(const ty_integrator* in, const ty_sampler* sampler, ty_
             ((traits & TY_TRAIT_MEDIUM) && !meets_boundary(in, material, point, p, &outside)))
         {
             ty_path_pass(point, hit.t, &p->ray);
+            if (in->has_media)
+                ty_path_keep_way(point, p);
             counters->path_rays++;
             continue;
         }
@@ -311,7 +316,7 @@ static void begin(const ty_integrator* in, const ty_sampler* sampler, const ty_r
     {
         p->rng = ty_sampler_extra(sampler, -1); // no surface has that number
         p->scatterings = 0;
-        p->entered = 0.0f;
+        p->entered = p->lead = 0.0f;
     }
 }
 

@@ -22,6 +22,7 @@ typedef struct ty_path
     ty_rng rng;           // of scatterings in media
     int scatterings;      // in media
     float entered;        // largest channel of beta at the first of them since the last surface
+    float lead;           // m, of the way in the medium that lies before the ray's origin, which keeps off the surface
     ty_rgb absorption[2]; // 1/m, of the media on wo's side of the present surface and beyond it
     ty_media media;       // the ray is in; last, because paths in air leave it untouched
 } ty_path;
@@ -66,6 +67,9 @@ ty_path_flight ty_path_scatter(const ty_scattering* matter, float distance, ty_p
 
 void ty_path_find_media(const ty_scene* scene, ty_vec3 p, ty_media* out); // closed clear bodies around a point
 void ty_path_pass(const ty_surface_point* point, float t, ty_ray* ray);   // t: of the hit at point
+// A ray of the path has left a surface into the medium that the path is in: it begins on its own line, and what of the
+// way lies before that counts.
+void ty_path_keep_way(const ty_surface_point* point, ty_path* p);
 // The ray goes straight through the surface of a clear body: on its way out it has left the medium, too.
 void ty_path_leave(const ty_scene* scene, const ty_material* material, const ty_surface_point* point, ty_vec3 direction,
                    ty_media* media);

@@ -30,7 +30,7 @@ static void turn(ty_path* p, ty_vec3 origin, ty_vec3 direction)
 ty_path_flight ty_path_scatter(const ty_scattering* matter, float distance, ty_path* p, ty_counters* counters)
 {
     float u = ty_rng_float(&p->rng), flight = ty_flight_sample(matter, &p->beta, u, ty_rng_float(&p->rng));
-    if (!(flight < distance))
+    if (!(flight < distance + p->lead))
         return TY_PATH_PASSED;
     counters->interior_rays++;
     if (p->entered == 0.0f)
@@ -43,7 +43,8 @@ ty_path_flight ty_path_scatter(const ty_scattering* matter, float distance, ty_p
     }
     if (!ty_flight_survives(p->entered, &p->beta, &p->rng))
         return TY_PATH_ENDED;
-    ty_vec3 origin = ty_mad(p->ray.origin, p->ray.direction, flight);
+    ty_vec3 origin = ty_mad(p->ray.origin, p->ray.direction, ty_max(flight - p->lead, 0.0f));
+    p->lead = 0.0f;
     float time = p->ray.time;
     u = ty_rng_float(&p->rng);
     turn(p, origin, ty_phase_sample(matter->anisotropy, p->ray.direction, (ty_vec2){u, ty_rng_float(&p->rng)}));
@@ -118,6 +119,17 @@ void ty_path_pass(const ty_surface_point* point, float t, ty_ray* ray)
         ray->t_max -= t;
     if (ray->skip_distance < TY_FLOAT_MAX)
         ray->skip_distance -= t;
+}
+
+// Off the surface by as much as a ray that begins beside it, but without shifting the line: over a steep chord that
+// would change the way through a body by several times as much.
+void ty_path_keep_way(const ty_surface_point* point, ty_path* p)
+{
+    const float grazing = 0.1f; // lower rays begin beside the surface
+    float cosine = fabsf(ty_dot(p->ray.direction, point->ng));
+    p->lead = p->media.count > 0 ? ty_offset_distance(point) / ty_max(cosine, grazing) : 0.0f;
+    if (p->media.count > 0 && cosine > grazing)
+        p->ray.origin = ty_mad(point->position, p->ray.direction, p->lead);
 }
 
 static bool leaves(const ty_material* material, const ty_surface_point* point, ty_vec3 direction)
