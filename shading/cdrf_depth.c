@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `evaluate: depth`: a random line through a point at diffusion depth beneath x, in the prototype's space. On a sphere
-// the exits follow the Poisson kernel exactly.
+// the exits follow the Poisson kernel exactly. Where a body is thin a true walk takes its place.
 #include "curvature_at.h"
 #include "depth_field.h"
 #include "lobes.h"
@@ -8,8 +8,14 @@
 #include "spheroid_exit.h"
 #include <tsuya/shading/cdrf.h>
 #include <tsuya/shading/sampling.h>
+#include <tsuya/shading/walk.h>
 
 #define MAX_STEPS 64
+
+// Mean free path over thickness from which on some of the light walks, and from which on all of it does: where it
+// scatters a few times alone it has no diffusion depth, and a walk costs little more than a line.
+#define WALK_FROM 0.15f
+#define WALK_ALONE 0.5f
 
 // The osculating spheroid at x and the space it is in: that of the prototype where the instance is similar to it, else
 // the world's. Lengths are in units of that space.
@@ -181,10 +187,11 @@ static bool sees(const interior* in, ty_vec3 p, ty_vec3 way)
     return !ty_world_intersect_prototype(in->world, in->prototype, p, way, 0.999f, &hit);
 }
 
-// What an exit that channel `chosen` found at once is worth to each: its density for the channel over the mean of all,
-// with the line's density times cos / rho^2 for a point at distance rho within D that sees the exit. exit: from x, in
+// What an exit that channel `chosen` found at once is worth to each: its density for the channel over the mean of all
+// by their odds, with (1 + B / S) cos / rho^2 for a point at distance rho within D that sees the exit. exit: from x, in
 // the frame.
-static ty_rgb channel_weights(const interior* in, ty_vec3 exit, ty_vec3 normal, int chosen, bool convex)
+static ty_rgb channel_weights(const interior* in, ty_vec3 exit, ty_vec3 normal, int chosen, const float odds[3],
+                              bool convex)
 {
     float p[3], sum = 0.0f;
     for (int i = 0; i < 3; i++)
@@ -198,14 +205,25 @@ static ty_rgb channel_weights(const interior* in, ty_vec3 exit, ty_vec3 normal, 
         if (i != chosen && !convex && p[i] > 0.0f &&
             !sees(in, ty_mad(in->x, in->frame.n, -in->depth[i]), ty_to_world(in->frame, v)))
             p[i] = 0.0f;
-        sum += p[i];
+        sum += odds[i] * p[i];
     }
-    return sum > 0.0f ? ty_rgb_scale(ty_rgb_make(p[0], p[1], p[2]), 3.0f / sum) : ty_rgb_grey(1.0f);
+    return sum > 0.0f ? ty_rgb_scale(ty_rgb_make(p[0], p[1], p[2]), 1.0f / sum) : ty_rgb_grey(1.0f);
 }
 
-static ty_rgb one_channel(int i)
+static int choose_channel(const float odds[3], float u)
 {
-    return ty_rgb_make(i == 0 ? 3.0f : 0.0f, i == 1 ? 3.0f : 0.0f, i == 2 ? 3.0f : 0.0f);
+    int i = 0;
+    for (; i < 2 && u >= odds[i]; i++)
+        u -= odds[i];
+    while (i > 0 && odds[i] == 0.0f)
+        i--;
+    return i;
+}
+
+static ty_rgb one_channel(int i, const float odds[3])
+{
+    float w = 1.0f / odds[i];
+    return ty_rgb_make(i == 0 ? w : 0.0f, i == 1 ? w : 0.0f, i == 2 ? w : 0.0f);
 }
 
 // The end of a random line that gambler's ruin chooses, of two numbers alone: so their net is one over the exits.
@@ -217,7 +235,55 @@ static ty_vec3 line_direction(const interior* in, float depth, const float u[2])
     return (ty_vec3){s * cosine, s * sine, z};
 }
 
-bool ty_cdrf_depth_exit(const ty_shading_context* context, const ty_bsdf* b, const float u[3], ty_rng* extra,
+// --- the walk ---
+
+// By channel, and their mean.
+static float walk_shares(const ty_bsdf* b, float thickness, float shares[3])
+{
+    for (int i = 0; i < (b->grey ? 1 : 3); i++)
+    {
+        float s = ty_clamp((b->mean_free_path[i] / thickness - WALK_FROM) * (1.0f / (WALK_ALONE - WALK_FROM)), 0, 1);
+        shares[i] = s * s * (3.0f - 2.0f * s);
+    }
+    if (!b->grey)
+        return (shares[0] + shares[1] + shares[2]) * (1.0f / 3.0f);
+    shares[1] = shares[2] = shares[0];
+    return shares[0];
+}
+
+// Whether light walks, by chance; worth: what either choice is worth to each channel. u is as good as new.
+static bool choose_walk(const ty_bsdf* b, const interior* in, float* u, float worth[3])
+{
+    float mean = walk_shares(b, in->thickness * in->unit, worth);
+    bool walks = *u < mean;
+    float chance = walks ? mean : 1.0f - mean;
+    *u = ty_min((walks ? *u : *u - mean) / chance, TY_ONE_MINUS_EPSILON);
+    for (int i = 0; i < 3; i++)
+        worth[i] = (walks ? worth[i] : 1.0f - worth[i]) / chance;
+    return walks;
+}
+
+// White within, as the material `walk` is that has the same colour and mean free path. Channels that do not walk do
+// not decide about flights either.
+static bool walk_out(const ty_shading_context* context, ty_bsdf* b, const float u[3], const float worth[3],
+                     ty_rng* extra, ty_rgb* weight, ty_surface_point* exit)
+{
+    const float* l = b->mean_free_path;
+    float longest = b->grey ? l[0] : ty_max(l[0], ty_max(l[1], l[2])), extinction[3];
+    for (int i = 0; i < 3; i++)
+        extinction[i] = 1.0f / (b->grey || worth[i] == 0.0f ? longest : l[i]);
+    ty_scattering matter = {{extinction[0], extinction[1], extinction[2]}, {1.0f, 1.0f, 1.0f}, 0.0f};
+    ty_walk walk;
+    b->walk_end = ty_walk_through(context->world, &b->point, &matter, ty_walk_entry(&b->point, u), u[2], extra, &walk);
+    b->flights = walk.scatterings + 1;
+    if (b->walk_end != TY_WALK_LEFT)
+        return false;
+    *weight = ty_rgb_mul(*weight, walk.beta);
+    *exit = walk.exit;
+    return true;
+}
+
+bool ty_cdrf_depth_exit(const ty_shading_context* context, ty_bsdf* b, const float numbers[3], ty_rng* extra,
                         ty_rgb* weight, ty_surface_point* exit)
 {
     const ty_surface_point* x = &b->point;
@@ -226,11 +292,18 @@ bool ty_cdrf_depth_exit(const ty_shading_context* context, const ty_bsdf* b, con
     if (!field)
         return false;
     interior in;
+    float u[3] = {numbers[0], numbers[1], numbers[2]}, worth[3];
     interior_begin(b, context->world, field, prototype, &in);
+    bool walks = choose_walk(b, &in, &u[2], worth);
+    *weight = ty_rgb_mul(*weight, ty_rgb_make(worth[0], worth[1], worth[2]));
+    if (walks)
+        return walk_out(context, b, u, worth, extra, weight, exit);
+    // Channels have the more of the lines the less of their light walks.
+    const float odds[3] = {worth[0] * (1.0f / 3.0f), worth[1] * (1.0f / 3.0f), worth[2] * (1.0f / 3.0f)};
     bool coloured = find_depths(b, &in);
-    int chosen = coloured ? (int)ty_min(u[2] * 3.0f, 2.5f) : 0;
+    int chosen = coloured ? choose_channel(odds, u[2]) : 0;
     float depth = in.depth[chosen];
-    ty_rgb alone = coloured ? one_channel(chosen) : ty_rgb_grey(1.0f), factor = alone;
+    ty_rgb alone = coloured ? one_channel(chosen, odds) : ty_rgb_grey(1.0f), factor = alone;
     ty_vec3 start = ty_mad(in.x, in.frame.n, -depth), w = line_direction(&in, depth, u);
     ty_vec3 way = ty_to_world(in.frame, w);
     ty_hit hit;
@@ -246,7 +319,7 @@ bool ty_cdrf_depth_exit(const ty_shading_context* context, const ty_bsdf* b, con
             ty_vec3 n = triangle_normal(in.mesh, hit.triangle), v = ty_mul(w, hit.t);
             v.z -= depth;
             n = ty_vec3_make(ty_dot(n, in.frame.t), ty_dot(n, in.frame.b), ty_dot(n, in.frame.n));
-            factor = channel_weights(&in, v, n, chosen, x->convex);
+            factor = channel_weights(&in, v, n, chosen, odds, x->convex);
         }
     }
     *weight = ty_rgb_mul(*weight, factor);

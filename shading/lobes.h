@@ -39,11 +39,12 @@ bool ty_cdrf_spreads(const ty_bsdf* bsdf, float curvature, float spread[3]);
 // Where a walk that enters at the point leaves. u: three numbers. Returns false where the point itself is the answer.
 // Channels whose light spreads alike share one way; else one is chosen and *weight is multiplied by what that is worth
 // to each.
-bool ty_cdrf_depth_exit(const ty_shading_context* context, const ty_bsdf* bsdf, const float u[3], ty_rng* extra,
+bool ty_cdrf_depth_exit(const ty_shading_context* context, ty_bsdf* bsdf, const float u[3], ty_rng* extra,
                         ty_rgb* weight, ty_surface_point* exit);
 // The same by a random walk. Multiplies weight by what is left of the light, and notes in bsdf how the walk went.
 bool ty_walk_exit(const ty_shading_context* context, ty_bsdf* bsdf, const float u[3], ty_rng* extra, ty_rgb* weight,
                   ty_surface_point* exit);
+ty_vec3 ty_walk_entry(const ty_surface_point* x, const float u[2]);      // direction into which light enters at x
 ty_rgb ty_walk_reflectance(const ty_scattering* matter);                 // of a thick body
 void ty_probe_prepare(const ty_shading_context* context, ty_bsdf* bsdf); // curvature
 bool ty_cdrf_probe_exit(const ty_shading_context* context, const ty_bsdf* bsdf, const float u[3], ty_rgb* weight,

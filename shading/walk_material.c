@@ -118,7 +118,7 @@ ty_rgb ty_walk_reflectance(const ty_scattering* m)
 }
 
 // Light enters by the cosine about the shading normal; what that sends out of the surface is mirrored in it.
-static ty_vec3 entry_direction(const ty_surface_point* x, const float u[3])
+ty_vec3 ty_walk_entry(const ty_surface_point* x, const float u[2])
 {
     ty_frame frame = ty_frame_from_normal(ty_neg(x->ns));
     ty_vec3 w = ty_normalize(ty_to_world(frame, ty_sample_cosine((ty_vec2){u[0], u[1]})));
@@ -137,7 +137,7 @@ bool ty_walk_exit(const ty_shading_context* context, ty_bsdf* b, const float u[3
         b->walk_end = ty_walk_from(context->world, x->object, x->instance, x->time, ty_mad(x->position, b->wo, b->way),
                                    &b->matter, ty_neg(b->wo), extra, &walk);
     else
-        b->walk_end = ty_walk_through(context->world, x, &b->matter, entry_direction(x, u), u[2], extra, &walk);
+        b->walk_end = ty_walk_through(context->world, x, &b->matter, ty_walk_entry(x, u), u[2], extra, &walk);
     b->flights = walk.scatterings + 1;
     switch (b->walk_end)
     {

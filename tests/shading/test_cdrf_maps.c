@@ -27,10 +27,10 @@ static void test_channels_follow_their_kernels(void** state)
     for (int turn = 0; turn < 3; turn++)
         for (int e = TY_CDRF_DEPTH; e <= TY_CDRF_LOCAL; e++)
         {
-            ty_cdrf_def d = white_cdrf((ty_cdrf_evaluate)e, TY_CDRF_POISSON, 0.5f * radius);
+            ty_cdrf_def d = white_cdrf((ty_cdrf_evaluate)e, TY_CDRF_POISSON, 0.29f * radius);
             set_scale(&d, turn);
             ty_material* m = cdrf(&d);
-            float t = ty_cdrf_poisson_t(0.5f * d.mean_free_path_scale.value.g, 0);
+            float t = ty_cdrf_poisson_t(0.29f * d.mean_free_path_scale.value.g, 0);
             for (int a = 30; a <= 180; a += 50)
             {
                 double angle = a * M_PI / 180;
@@ -51,12 +51,12 @@ static void check_exits_of_green(const stage* s, int turn, ty_cdrf_evaluate eval
         BINS = 24,
         COUNT = 60000
     };
-    ty_cdrf_def d = white_cdrf(evaluate, TY_CDRF_POISSON, 0.5f * radius);
+    ty_cdrf_def d = white_cdrf(evaluate, TY_CDRF_POISSON, 0.29f * radius);
     set_scale(&d, turn);
     ty_material* m = cdrf(&d);
     ty_surface_point p = from_above(s);
     ty_rng rng = ty_rng_make((ty_seed){6}, 0, 0);
-    double g = exp(-(double)ty_cdrf_poisson_t(0.5f * d.mean_free_path_scale.value.g, 0));
+    double g = exp(-(double)ty_cdrf_poisson_t(0.29f * d.mean_free_path_scale.value.g, 0));
     double sum[BINS] = {0}, squares[BINS] = {0}, all = 0.0, chi = 0.0;
     for (int i = 0; i < COUNT; i++)
     {
@@ -119,7 +119,7 @@ static double kept_of_green(const stage* s, const ty_surface_point* p, const ty_
 static void test_channels_where_light_is_hidden(void** state)
 {
     (void)state;
-    static const float tubes[2] = {0.6e-3f, 1.4e-3f}, paths[2] = {2e-3f, 0.5e-3f};
+    static const float tubes[2] = {0.6e-3f, 1.4e-3f}, paths[2] = {2e-3f, 0.4e-3f};
     for (int i = 0; i < 2; i++)
     {
         stage s;
