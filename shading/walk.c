@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random walks within one closed instance, traced in its prototype's space; distances are those of the world under any
 // map, because directions are carried over with their length.
-#include <tsuya/shading/walk.h>
+#include "guide.h"
 
 typedef struct body
 {
@@ -78,45 +78,49 @@ static bool is_within(const ty_bounds* box, ty_vec3 p)
 }
 
 // p in the prototype's space, direction in the world. Sets of the exit what a hit says.
-static ty_walk_end walk_on(body* b, ty_vec3 p, float u, const ty_scattering* matter, ty_rng* rng, ty_walk* walk,
-                           ty_hit* hit)
+static ty_walk_end walk_on(body* b, ty_vec3 p, float u, const ty_scattering* matter, const ty_guide* guide, ty_rng* rng,
+                           ty_walk* walk, ty_hit* hit)
 {
+    ty_guided way = ty_guide_first(guide, walk->direction, rng);
     for (uint32_t i = 0; i < TY_WALK_MAX_FLIGHTS; ++i)
     {
         float u_channel = ty_rng_float(rng);
         float length = ty_flight_sample(matter, &walk->beta, u_channel, i == 0 ? u : ty_rng_float(rng));
-        ty_vec3 direction = ty_map_vector(&b->to_local, walk->direction);
+        if (way.guided)
+            length /= way.stretch;
+        ty_vec3 direction = ty_map_vector(&b->to_local, way.direction);
+        walk->direction = way.direction;
         switch (find_end(b, p, direction, length, hit))
         {
         case CROSSING_OUT:
-            ty_flight_pass(matter, hit->t, &walk->beta);
+            ty_guide_weigh(guide, matter, &way, hit->t, false, &walk->beta);
             return TY_WALK_LEFT;
         case CROSSING_LOST:
             return TY_WALK_LOST;
         case CROSSING_NONE:
             break;
         }
-        ty_flight_scatter(matter, length, &walk->beta);
+        ty_guide_weigh(guide, matter, &way, length, true, &walk->beta);
         walk->scatterings++;
         if (!ty_flight_survives(1.0f, &walk->beta, rng))
             return TY_WALK_ABSORBED;
         p = ty_mad(p, direction, length);
         if (!is_within(&b->mesh->bounds, p))
             return TY_WALK_LOST;
-        float first = ty_rng_float(rng);
-        walk->direction = ty_phase_sample(matter->anisotropy, walk->direction, (ty_vec2){first, ty_rng_float(rng)});
+        way = ty_guide_next(guide, matter, walk->direction, rng);
     }
     return TY_WALK_CUT;
 }
 
 static ty_walk_end run(body* b, uint32_t object, uint32_t instance, float time, ty_vec3 p, float u,
-                       const ty_scattering* matter, ty_vec3 direction, ty_rng* rng, ty_walk* walk)
+                       const ty_scattering* matter, const ty_guide* guide, ty_vec3 direction, ty_rng* rng,
+                       ty_walk* walk)
 {
     ty_hit hit;
     walk->beta = ty_rgb_grey(1.0f);
     walk->direction = direction;
     walk->scatterings = 0;
-    ty_walk_end end = walk_on(b, p, u, matter, rng, walk, &hit);
+    ty_walk_end end = walk_on(b, p, u, matter, guide, rng, walk, &hit);
     if (end != TY_WALK_LEFT)
         return end;
     hit.object = object;
@@ -130,13 +134,15 @@ ty_walk_end ty_walk_through(const ty_world* world, const ty_surface_point* x, co
                             ty_vec3 direction, float u, ty_rng* rng, ty_walk* walk)
 {
     body b = body_make(world, x->object, x->instance, x->time);
-    return run(&b, x->object, x->instance, x->time, beneath(b.mesh, x), u, matter, direction, rng, walk);
+    ty_guide guide = ty_guide_make(matter, x->ng);
+    return run(&b, x->object, x->instance, x->time, beneath(b.mesh, x), u, matter, &guide, direction, rng, walk);
 }
 
 ty_walk_end ty_walk_from(const ty_world* world, uint32_t object, uint32_t instance, float time, ty_vec3 origin,
                          const ty_scattering* matter, ty_vec3 direction, ty_rng* rng, ty_walk* walk)
 {
+    static const ty_guide unguided = {0};
     body b = body_make(world, object, instance, time);
-    return run(&b, object, instance, time, ty_map_point(&b.to_local, origin), ty_rng_float(rng), matter, direction, rng,
-               walk);
+    return run(&b, object, instance, time, ty_map_point(&b.to_local, origin), ty_rng_float(rng), matter, &unguided,
+               direction, rng, walk);
 }
