@@ -247,7 +247,7 @@ static float area_of(const ty_light_set* set, const ty_light_mesh* mesh, const t
 // What a path would find there: where the surface lets through it emits nothing.
 static ty_rgb emitted(const ty_scene* scene, const ty_material* material, const ty_surface_point* point, ty_vec3 wi)
 {
-    ty_rgb emission = ty_material_emission(material, &scene->shading, point);
+    ty_rgb emission = ty_material_emission_towards(material, &scene->shading, point, ty_neg(wi));
     if (!(ty_material_traits(material) & TY_TRAIT_TRANSPARENT))
         return emission;
     return ty_rgb_scale(emission, ty_material_transparency(material, &scene->shading, point, ty_neg(wi)).opacity);

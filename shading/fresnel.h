@@ -16,6 +16,12 @@ static inline float ty_fresnel(float cosine, float eta)
     return 0.5f * (s * s + p * p);
 }
 
+// Mean reflectance of a boundary to a denser medium (fit of Kulla & Conty 2017).
+static inline float ty_fresnel_average(float n)
+{
+    return n > 1.0f ? (n - 1.0f) / (4.08567f + 1.00071f * n) : 0.0f;
+}
+
 // The index by which a boundary reflects: `weight` times as much at normal incidence as that of eta, where coat, the
 // index of what covers it, is 1 (OpenPBR Surface 1.1, "Specular" and "Coat"). Neither can become total for that.
 static inline float ty_shine(float eta, float weight, float coat)

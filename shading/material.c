@@ -93,7 +93,9 @@ ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** ou
                !def->thin_walled;
     m->body = !def->thin_walled && !ty_input_is_zero(&def->subsurface_weight);
     m->cdrf = ty_cdrf_def_default(); // how light goes through the body
-    m->anisotropic = !m->matte && !ty_input_is_zero(&def->specular_roughness_anisotropy);
+    m->anisotropic =
+        !m->matte && (!ty_input_is_zero(&def->specular_roughness_anisotropy) ||
+                      (!ty_input_is_zero(&def->coat_weight) && !ty_input_is_zero(&def->coat_roughness_anisotropy)));
     m->base_is_constant = ty_input_is_constant(&def->base_color) && ty_input_is_constant(&def->base_weight);
     m->base_color = ty_rgb_scale(ty_clamp_color(def->base_color.value), ty_clamp(def->base_weight.value.r, 0.0f, 1.0f));
     m->emissive = !ty_input_is_zero(&def->emission_luminance) && !ty_input_is_zero(&def->emission_color);

@@ -80,6 +80,12 @@ static inline ty_rgb ty_clamp_color(ty_rgb c)
     return ty_rgb_make(ty_clamp(c.r, 0, 1), ty_clamp(c.g, 0, 1), ty_clamp(c.b, 0, 1));
 }
 
+static inline float ty_unit_input(const ty_input* input, const ty_shading_context* context,
+                                  const ty_surface_point* point)
+{
+    return ty_clamp(ty_input_float(input, context, point), 0.0f, 1.0f);
+}
+
 // Tables of a reflection, NULL where it is none; and all those of a `surface` that holds its def.
 ty_albedo_table* ty_material_make_table(const ty_input* weight, const ty_input* roughness, const float eta[2]);
 void ty_surface_make_tables(ty_material* material);
@@ -89,6 +95,11 @@ ty_rgb ty_surface_base_color(const ty_surface_def* def, const ty_shading_context
 
 // Matter by its colour and mean free path.
 ty_scattering ty_walk_matter(ty_rgb color, float radius, ty_rgb scale, float anisotropy);
+
+// Coat and fuzz at the point; and what goes on beneath the coat, once the base is known.
+void ty_surface_prepare_layers(const ty_material* material, const ty_shading_context* context, ty_bsdf* bsdf);
+void ty_surface_prepare_darkening(const ty_surface_def* def, const ty_shading_context* context, float roughness,
+                                  ty_bsdf* bsdf);
 
 // out holds point, frame, wo, entering and bent already; all else is zero.
 void ty_surface_prepare(const ty_material* material, const ty_shading_context* context, ty_bsdf* out);

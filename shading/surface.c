@@ -6,16 +6,11 @@
 #include "microfacet.h"
 #include "surface_private.h"
 
-static float unit_input(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)
-{
-    return ty_clamp(ty_input_float(input, context, point), 0.0f, 1.0f);
-}
-
 ty_rgb ty_surface_base_color(const ty_surface_def* def, const ty_shading_context* context,
                              const ty_surface_point* point)
 {
     ty_rgb color = ty_clamp_color(ty_input_color(&def->base_color, context, point));
-    return ty_rgb_scale(color, unit_input(&def->base_weight, context, point));
+    return ty_rgb_scale(color, ty_unit_input(&def->base_weight, context, point));
 }
 
 // Of the dielectric.
@@ -102,7 +97,7 @@ static void choose_probabilities(ty_bsdf* b, float mu)
 static void prepare_body(const ty_surface_def* s, const ty_shading_context* context, ty_bsdf* b)
 {
     const ty_surface_point* p = &b->point;
-    b->body = unit_input(&s->subsurface_weight, context, p);
+    b->body = ty_unit_input(&s->subsurface_weight, context, p);
     if (!(ty_surface_body(b) > 0.0f))
         return;
     ty_rgb color = ty_clamp_color(ty_input_color(&s->subsurface_color, context, p));
@@ -119,7 +114,7 @@ static void prepare_body(const ty_surface_def* s, const ty_shading_context* cont
 static void prepare_transmission(const ty_surface_def* s, const ty_shading_context* context, ty_bsdf* b)
 {
     const ty_surface_point* p = &b->point;
-    b->transmission_weight = unit_input(&s->transmission_weight, context, p);
+    b->transmission_weight = ty_unit_input(&s->transmission_weight, context, p);
     if (b->transmission_weight <= 0.0f || b->metalness >= 1.0f)
         return;
     b->inside = !b->entering && !b->thin;
@@ -133,10 +128,10 @@ static void prepare_transmission(const ty_surface_def* s, const ty_shading_conte
 static void prepare_diffuse(const ty_surface_def* s, const ty_shading_context* context, ty_bsdf* b)
 {
     b->diffuse = b->color;
-    b->diffuse_roughness = unit_input(&s->base_diffuse_roughness, context, &b->point);
+    b->diffuse_roughness = ty_unit_input(&s->base_diffuse_roughness, context, &b->point);
     if (!b->thin)
         return;
-    float weight = unit_input(&s->subsurface_weight, context, &b->point);
+    float weight = ty_unit_input(&s->subsurface_weight, context, &b->point);
     ty_rgb color = ty_clamp_color(ty_input_color(&s->subsurface_color, context, &b->point));
     float through = 0.5f * (1.0f + s->subsurface_anisotropy);
     b->diffuse = ty_rgb_lerp(b->color, ty_rgb_scale(color, 1.0f - through), weight);
@@ -173,19 +168,13 @@ static void prepare_conductor_loss(const ty_material* material, float roughness,
                                     scale * conductor_share(f.b, loss));
 }
 
-// Mean reflectance of a boundary to a denser medium (fit of Kulla & Conty 2017).
-static float boundary_average(float n)
-{
-    return n > 1.0f ? (n - 1.0f) / (4.08567f + 1.00071f * n) : 0.0f;
-}
-
 // Share of what is lost on wo's side of a clear boundary that goes on beyond it. Reciprocal: what one side hands over
 // in a uniform light is what the other hands back, t1 l1 = t2 n^2 l2 (Kulla & Conty 2017); 1 - the mean Fresnel
 // reflectance where the losses are alike.
 static float far_share(const ty_bsdf* b)
 {
     float near = b->near_loss.average, far = b->far_loss.average, n = ty_max(b->eta, 1.0f / b->eta);
-    float through = (1.0f - boundary_average(ty_max(b->shine, 1.0f / b->shine))) * ty_min(near, far) / near;
+    float through = (1.0f - ty_fresnel_average(ty_max(b->shine, 1.0f / b->shine))) * ty_min(near, far) / near;
     return b->eta >= 1.0f ? through : through / (n * n);
 }
 
@@ -196,7 +185,7 @@ static void prepare_sheet_loss(const ty_material* material, float roughness, flo
     float loss = b->near_loss.average;
     if (!(loss > 0.0f))
         return;
-    float f = boundary_average(b->shine), scale = ty_loss_row_at(&b->near_loss, mu);
+    float f = ty_fresnel_average(b->shine), scale = ty_loss_row_at(&b->near_loss, mu);
     scale *= ty_surface_clear(b) / (TY_PI * loss);
     b->near_share = 2.0f * f / (1.0f + f);
     b->far_gain = scale * (1.0f - f) / (1.0f + f);
@@ -237,79 +226,12 @@ static void prepare_loss(const ty_material* material, float roughness, ty_bsdf* 
         couple_near_loss(mu, b);
 }
 
-static void prepare_coat(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
-{
-    const ty_surface_def* s = &material->surface;
-    b->coat_weight = unit_input(&s->coat_weight, context, &b->point);
-    if (b->coat_weight <= 0.0f)
-        return;
-    float roughness = unit_input(&s->coat_roughness, context, &b->point);
-    b->coat_roughness = roughness;
-    b->coat_alpha = ty_ggx_alpha(roughness);
-    b->coat_eta = s->coat_ior;
-    b->coat_row = ty_albedo_table_row(material->coat, roughness, s->coat_ior);
-    if (b->fuzz_weight > 0.0f)
-        b->coat_under_fuzz = ty_albedo_table_row(material->coat_under_fuzz, roughness, b->fuzz_roughness);
-    const float blackest = 1e-4f;
-    ty_rgb c = ty_input_color(&s->coat_color, context, &b->point);
-    b->coat_log = ty_rgb_make(ty_ln(ty_clamp(c.r, blackest, 1.0f)), ty_ln(ty_clamp(c.g, blackest, 1.0f)),
-                              ty_ln(ty_clamp(c.b, blackest, 1.0f)));
-    b->tinted = !ty_rgb_is_black(b->coat_log);
-}
-
-static void prepare_fuzz(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
-{
-    const ty_surface_def* s = &material->surface;
-    b->fuzz_weight = unit_input(&s->fuzz_weight, context, &b->point);
-    if (b->fuzz_weight <= 0.0f)
-        return;
-    b->fuzz_roughness = unit_input(&s->fuzz_roughness, context, &b->point);
-    b->fuzz_color = ty_clamp_color(ty_input_color(&s->fuzz_color, context, &b->point));
-    b->fuzz_row = ty_albedo_table_row(material->fuzz, b->fuzz_roughness, 1.0f);
-}
-
-static void prepare_layers(const ty_material* material, const ty_shading_context* context, ty_bsdf* b)
-{
-    if (material->fuzz)
-        prepare_fuzz(material, context, b);
-    if (material->coat)
-        prepare_coat(material, context, b);
-    b->layered = !b->inside && (b->coat_weight > 0.0f || b->fuzz_weight > 0.0f);
-}
-
-// What goes back and forth between base and coat meets the base's colour again (OpenPBR Surface 1.1, "Darkening").
-// returned: share of the light from the base that the coat sends back.
-static ty_rgb darkened(ty_rgb color, float returned, float weight)
-{
-    float left = 1.0f - returned;
-    ty_rgb once = {color.r * left / (1.0f - color.r * returned), color.g * left / (1.0f - color.g * returned),
-                   color.b * left / (1.0f - color.b * returned)};
-    return ty_rgb_lerp(color, once, weight);
-}
-
-static void prepare_darkening(const ty_surface_def* s, const ty_shading_context* context, float roughness, ty_bsdf* b)
-{
-    float weight = b->coat_weight * unit_input(&s->coat_darkening, context, &b->point), n = b->coat_eta;
-    if (!(weight > 0.0f) || !(n > 1.0f))
-        return;
-    float diffuse = 1.0f - (1.0f - boundary_average(n)) / (n * n), mirror = ty_sqr((n - 1.0f) / (n + 1.0f));
-    b->diffuse = darkened(b->diffuse, diffuse, weight);
-    b->body_color = darkened(b->body_color, diffuse, weight);
-    b->diffuse_below = darkened(b->diffuse_below, diffuse, weight);
-    ty_rgb metal = darkened(b->color, ty_lerp(mirror, diffuse, roughness), weight);
-    const float least = 1e-6f;
-    ty_rgb shade = {metal.r / ty_max(b->color.r, least), metal.g / ty_max(b->color.g, least),
-                    metal.b / ty_max(b->color.b, least)};
-    b->metal = ty_rgb_mul(b->metal, shade);
-    b->conductor_gain = ty_rgb_mul(b->conductor_gain, shade);
-}
-
 // relative: index of the base; cover: of the coat on average, where it is.
 static void prepare_film(const ty_material* material, const ty_shading_context* context, float roughness,
                          float relative, float cover, ty_bsdf* b)
 {
     const ty_surface_def* s = &material->surface;
-    float weight = unit_input(&s->thin_film_weight, context, &b->point);
+    float weight = ty_unit_input(&s->thin_film_weight, context, &b->point);
     float thickness = ty_input_float(&s->thin_film_thickness, context, &b->point);
     if (!(weight > 0.0f) || !(thickness > 0.0f))
         return;
@@ -337,7 +259,7 @@ static void prepare_boundary(const ty_material* material, const ty_shading_conte
     if (fabsf(relative - 1.0f) < 0.001f && b->transmission_weight > 0.0f && !(b->thin && b->film.weight > 0.0f))
         b->alpha = ty_ggx_round(0.0f);
     else if (material->anisotropic)
-        b->alpha = ty_ggx_alpha_stretched(roughness, unit_input(&s->specular_roughness_anisotropy, context, p));
+        b->alpha = ty_ggx_alpha_stretched(roughness, ty_unit_input(&s->specular_roughness_anisotropy, context, p));
     else
         b->alpha = ty_ggx_round(ty_ggx_alpha(roughness));
     if (!b->inside)
@@ -394,23 +316,23 @@ void ty_surface_prepare(const ty_material* material, const ty_shading_context* c
     b->kind = TY_BSDF_SURFACE;
     b->thin = s->thin_walled;
     b->color = ty_surface_base_color(s, context, p);
-    if (material->emissive && b->entering)
-        b->emission = ty_material_emission(material, context, p);
     b->specular_tint = ty_clamp_color(ty_input_color(&s->specular_color, context, p));
-    b->metalness = unit_input(&s->base_metalness, context, p);
-    b->specular_weight = unit_input(&s->specular_weight, context, p);
+    b->metalness = ty_unit_input(&s->base_metalness, context, p);
+    b->specular_weight = ty_unit_input(&s->specular_weight, context, p);
     b->metal = ty_rgb_grey(b->metalness * b->specular_weight);
     if (b->metalness > 0.0f)
         b->metal_dip = ty_metal_dip(b->color, b->specular_tint);
-    float roughness = unit_input(&s->specular_roughness, context, p), mu = ty_dot(b->wo, b->frame.n);
+    float roughness = ty_unit_input(&s->specular_roughness, context, p), mu = ty_dot(b->wo, b->frame.n);
     prepare_transmission(s, context, b);
-    prepare_layers(material, context, b);
+    ty_surface_prepare_layers(material, context, b);
+    if (material->emissive && b->entering)
+        b->emission = ty_rgb_mul(ty_material_emission(material, context, p), ty_layers_across(b, mu, mu));
     prepare_diffuse(s, context, b);
     if (material->body && b->entering)
         prepare_body(s, context, b);
     prepare_boundary(material, context, roughness, b);
     if (b->coat_weight > 0.0f)
-        prepare_darkening(s, context, roughness, b);
+        ty_surface_prepare_darkening(s, context, roughness, b);
     couple_diffuse(mu, b);
     choose_probabilities(b, mu);
 }

@@ -161,6 +161,30 @@ ty_rgb ty_surface_eval_diffuse(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* 
     return b->tinted && b->layered ? ty_rgb_mul(f, ty_layers_tint(b, wo.z, wi.z)) : f;
 }
 
+// Between the base's frame and that of the coat.
+static ty_vec3 turned(const ty_bsdf* b, ty_vec3 w, float sine)
+{
+    return ty_vec3_make(b->coat_cosine * w.x + sine * w.y, b->coat_cosine * w.y - sine * w.x, w.z);
+}
+
+static ty_rgb eval_coat(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
+{
+    if (!b->coat_stretched)
+        return ty_coat_eval(b, wo, wi, pdf);
+    float cos_h,
+        d = ty_ggx_reflect(turned(b, wo, b->coat_sine), turned(b, wi, b->coat_sine), b->coat_stretch, pdf, &cos_h);
+    return ty_rgb_grey(b->coat_weight * ty_fresnel(cos_h, b->coat_eta) * d);
+}
+
+static ty_vec3 sample_coat(const ty_bsdf* b, ty_vec3 wo, ty_vec2 u)
+{
+    ty_vec3 h = b->coat_stretched
+                    ? turned(b, ty_ggx_sample(turned(b, wo, b->coat_sine), b->coat_stretch, u), -b->coat_sine)
+                    : ty_ggx_sample(wo, ty_ggx_round(b->coat_alpha), u);
+    ty_vec3 wi = ty_reflect(wo, h);
+    return wi.z > 0.0f ? wi : (ty_vec3){0};
+}
+
 static ty_rgb eval_reflection(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* pdf)
 {
     const float* p = b->lobe_probability;
@@ -168,7 +192,7 @@ static ty_rgb eval_reflection(const ty_bsdf* b, ty_vec3 wo, ty_vec3 wi, float* p
     if (p[TY_LOBE_COAT] > 0.0f && b->coat_alpha > 0.0f)
     {
         float coat_pdf;
-        f = ty_rgb_scale(ty_coat_eval(b, wo, wi, &coat_pdf), ty_layers_over_coat(b, wo.z, wi.z));
+        f = ty_rgb_scale(eval_coat(b, wo, wi, &coat_pdf), ty_layers_over_coat(b, wo.z, wi.z));
         *pdf += p[TY_LOBE_COAT] * coat_pdf;
     }
     if (p[TY_LOBE_FUZZ] > 0.0f)
@@ -293,10 +317,7 @@ static ty_vec3 sample_lobe(const ty_bsdf* b, ty_vec3 wo, int lobe, float u_rest,
     switch ((ty_surface_lobe)lobe)
     {
     case TY_LOBE_COAT:
-    {
-        ty_vec3 wi = ty_reflect(wo, ty_ggx_sample(wo, ty_ggx_round(b->coat_alpha), u));
-        return wi.z > 0.0f ? wi : (ty_vec3){0};
-    }
+        return sample_coat(b, wo, u);
     case TY_LOBE_SPECULAR:
         return sample_boundary(b, wo, u_rest, u);
     case TY_LOBE_TRANSMISSION:

@@ -65,7 +65,7 @@ static void test_parameter_tables(void** state)
     check_table(ty_cdrf_params());
     check_table(ty_soak_params());
     check_table(ty_moisture_law_params());
-    assert_int_equal(ty_surface_params()->count, 40);
+    assert_int_equal(ty_surface_params()->count, 42);
     assert_int_equal(ty_cdrf_params()->count, 15);
 }
 

@@ -92,14 +92,27 @@ static void test_channels(void** state)
     make_ball(&s);
     ty_surface_def d = body(1.0f, TY_SUBSURFACE_DEPTH);
     d.subsurface_radius = ty_input_scalar(6e-4f);
-    d.subsurface_radius_scale = ty_input_make(ty_rgb_make(1, 0.3f, 0.05f));
-    ty_material* all = surface(&d);
-    d.subsurface_radius_scale = ty_input_scalar(0.3f);
-    ty_material* green = surface(&d);
-    assert_near(shown(&s, all, 1.9), shown(&s, green, 1.9), 0.012);
-    assert_true(shown(&s, green, 1.9) > 0.02);
-    ty_material_destroy(all);
-    ty_material_destroy(green);
+    const float scales[3] = {1, 0.3f, 0.05f};
+    double alone[3];
+    for (int i = 0; i < 3; i++)
+    {
+        d.subsurface_radius_scale = ty_input_scalar(scales[i]);
+        ty_material* m = surface(&d);
+        alone[i] = shown(&s, m, 1.9);
+        ty_material_destroy(m);
+    }
+    assert_true(alone[0] > alone[1] + 0.02 && alone[1] > alone[2] + 0.02);
+    // What `shown` sees is green: each scale takes its place there, among the others.
+    for (int i = 0; i < 3; i++)
+    {
+        d.subsurface_radius_scale = ty_input_make(ty_rgb_make(scales[(i + 2) % 3], scales[i], scales[(i + 1) % 3]));
+        ty_material* m = surface(&d);
+        assert_near(shown(&s, m, 1.9), alone[i], 0.012);
+        ty_bsdf b = bsdf_at(m, 0.3);
+        for (int k = 0; k < 3; k++)
+            assert_near(b.mean_free_path[k], 6e-4 * (double)scales[(i + k + 2) % 3], 1e-8);
+        ty_material_destroy(m);
+    }
     stage_term(&s);
 }
 

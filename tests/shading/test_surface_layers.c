@@ -248,6 +248,83 @@ static void test_coat_colour_and_darkening(void** state)
     assert_near(albedo[1] / albedo[0], (1 - 0.652) / (1 - 0.5 * 0.652), 0.005);
 }
 
+static void brush_coat(ty_surface_def* d, float turn)
+{
+    d->coat_roughness = ty_input_scalar(0.6f);
+    d->coat_roughness_anisotropy = ty_input_scalar(0.8f);
+    d->coat_rotation = ty_input_scalar(turn);
+}
+
+// A coat brushed another way than what lies beneath it.
+static void test_brushed_coat(void** state)
+{
+    (void)state;
+    ty_surface_def d = stack(STACK_COAT_METAL, 0.5f), even = d;
+    d.base_color = even.base_color = ty_input_make(ty_rgb_make(0.9f, 0.5f, 0.2f));
+    brush_coat(&d, 0.6f);
+    check_at_angles(&d);
+    check_reciprocal(&d, false, 1);
+
+    // Turned by a quarter it shows along one axis what it showed along the other; of the base alone nothing turns.
+    ty_vec3 aside = ty_normalize(ty_vec3_make(0.5f, 0, 1)), across = ty_normalize(ty_vec3_make(0, 0.5f, 1));
+    float shown[2][2], pdf;
+    for (int i = 0; i < 2; i++)
+    {
+        ty_surface_def black = stack(STACK_COAT_LAMBERT, 0);
+        black.base_color = ty_input_scalar(0);
+        brush_coat(&black, i ? 0.5f * TY_PI : 0);
+        black.specular_rotation = ty_input_scalar(0.3f);
+        black.coat_rotation.value = ty_rgb_add(black.coat_rotation.value, ty_rgb_grey(0.3f));
+        ty_material* m = surface(&black);
+        ty_bsdf b = bsdf_at(m, 0);
+        shown[i][0] = ty_bsdf_eval(&b, ty_to_world(b.frame, aside), &pdf).g;
+        shown[i][1] = ty_bsdf_eval(&b, ty_to_world(b.frame, across), &pdf).g;
+        ty_material_destroy(m);
+    }
+    assert_true(shown[0][0] > 3 * shown[0][1]);
+    assert_near(shown[0][0], (double)shown[1][1], 1e-5);
+    assert_near(shown[0][1], (double)shown[1][0], 1e-5);
+    d.base_color = even.base_color = ty_input_scalar(1);
+    ty_material* m = surface(&d);
+    ty_bsdf b = bsdf_at(m, 0.7);
+    assert_near(lattice_weight(&b, 50000), 1.0, 0.015); // what is lost is known for even roughness
+    ty_material_destroy(m);
+}
+
+// Emission lies at the base: a coat's Fresnel and colour, and fuzz, take their parts on the way out.
+static void test_emission_beneath(void** state)
+{
+    (void)state;
+    ty_surface_point p = {.ng = {0, 0, 1}, .ns = {0, 0, 1}};
+    for (int i = 0; i < 4; i++)
+    {
+        double c = cos(angles[i]), within = sqrt(1 - (1 - c * c) / (1.6 * 1.6));
+        double s = (c - 1.6 * within) / (c + 1.6 * within), q = (1.6 * c - within) / (1.6 * c + within);
+        double through = 1 - 0.5 * (s * s + q * q);
+        ty_surface_def d = stack(STACK_COAT_LAMBERT, 0);
+        d.emission_luminance = ty_input_scalar(5);
+        d.coat_roughness = ty_input_scalar(0);
+        d.coat_color = ty_input_make(ty_rgb_make(0.25f, 1, 1));
+        ty_material* m = surface(&d);
+        ty_bsdf b = bsdf_at(m, angles[i]);
+        assert_near(b.emission.g, 5 * through, 0.02);
+        assert_near(b.emission.r / b.emission.g, pow(0.25, 0.5 / within), 1e-3);
+        ty_rgb towards = ty_material_emission_towards(m, NULL, &p, b.wo);
+        assert_near(towards.r, (double)b.emission.r, 1e-6);
+        assert_near(towards.g, (double)b.emission.g, 1e-6);
+        ty_material_destroy(m);
+
+        d = stack(STACK_FUZZ, 0.5f);
+        d.base_color = ty_input_scalar(0);
+        d.emission_luminance = ty_input_scalar(5);
+        m = surface(&d);
+        b = bsdf_at(m, angles[i]);
+        assert_near(b.emission.g, 5 * (1 - lattice_weight(&b, 50000)), 0.02); // the fuzz is white
+        assert_near(ty_material_emission_towards(m, NULL, &p, b.wo).g, (double)b.emission.g, 1e-6);
+        ty_material_destroy(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -260,6 +337,8 @@ int main(void)
         cmocka_unit_test(test_metal_edge),
         cmocka_unit_test(test_specular_weight),
         cmocka_unit_test(test_coat_colour_and_darkening),
+        cmocka_unit_test(test_brushed_coat),
+        cmocka_unit_test(test_emission_beneath),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

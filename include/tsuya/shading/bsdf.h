@@ -97,6 +97,9 @@ typedef struct ty_bsdf
     float outside;              // refractive index around the body
     float coat_weight;          // surface: of the coat; cdrf: of the specular reflection
     float coat_alpha, coat_eta; // alpha 0 = mirror
+    ty_vec2 coat_stretch;       // surface: instead, along t and b turned by
+    float coat_sine, coat_cosine;
+    bool coat_stretched;
     ty_albedo_row specular_row; // E of the dielectric specular
     ty_albedo_row coat_row;     // E of the coat
     // What facets lose that are met once only goes back as lobes in proportion to what is lost along wi.

@@ -41,6 +41,8 @@ typedef struct ty_surface_def
     ty_input coat_weight;
     ty_input coat_color; // what is left of light after going through it and back, straight
     ty_input coat_roughness;
+    ty_input coat_roughness_anisotropy; // 0..1, as that of the specular reflection
+    ty_input coat_rotation;             // radians
     float coat_ior;
     ty_input coat_darkening; // 0..1: how much of what it reflects back onto the base counts
     ty_input fuzz_weight;
@@ -203,9 +205,12 @@ ty_moisture ty_moisture_at(const ty_moisture_inputs* inputs, const ty_shading_co
                            const ty_surface_point* point);
 bool ty_moisture_inputs_are_constant(const ty_moisture_inputs* inputs);
 
-// Radiance that leaves the outer side at a point, in every direction.
+// Radiance that the base emits at a point of the outer side, in every direction; and what coat and fuzz leave of it
+// towards wo.
 ty_rgb ty_material_emission(const ty_material* material, const ty_shading_context* context,
                             const ty_surface_point* point);
+ty_rgb ty_material_emission_towards(const ty_material* material, const ty_shading_context* context,
+                                    const ty_surface_point* point, ty_vec3 wo);
 
 typedef enum ty_material_trait
 {
