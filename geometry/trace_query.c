@@ -212,7 +212,7 @@ bool ty_world_occluded(const ty_world* world, const ty_ray* ray)
 static bool intersect_mesh(const ty_world* world, uint32_t prototype, ty_vec3 origin, float t_min, ty_vec3 direction,
                            float t_max, struct RTCRayHit* ray_hit)
 {
-    *ray_hit = (struct RTCRayHit){.ray = make_ray(origin, t_min, direction, t_max)};
+    ray_hit->ray = make_ray(origin, t_min, direction, t_max);
     ray_hit->hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ty_trace_context context = make_context(world, NULL);
     ty_embree_intersect(world->prototypes[prototype].scene, &context.embree, NULL, ray_hit);
@@ -257,11 +257,13 @@ bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_
 }
 
 bool ty_world_intersect_prototype(const ty_world* world, uint32_t prototype, ty_vec3 origin, ty_vec3 direction,
-                                  float t_max, ty_hit* hit)
+                                  float t_max, ty_hit* hit, bool* behind)
 {
     struct RTCRayHit ray_hit;
     if (!intersect_mesh(world, prototype, origin, 0.0f, direction, t_max, &ray_hit))
         return false;
+    if (behind)
+        *behind = ty_dot(ty_vec3_make(ray_hit.hit.Ng_x, ray_hit.hit.Ng_y, ray_hit.hit.Ng_z), direction) >= 0.0f;
     fill_hit(&ray_hit, TY_NONE, TY_NONE, 0.0f, hit);
     return true;
 }

@@ -51,9 +51,10 @@ static bool scatter(const ty_integrator* in, const ty_bsdf* bsdf, const float u[
     return ty_bsdf_sample_wi(bsdf, u[2], (ty_vec2){u[0], u[1]}, &sample) && go_on(in, bsdf, &sample, u[3], p);
 }
 
+// Of a bsdf that was open.
 static void count_interior(const ty_bsdf* bsdf, ty_counters* counters)
 {
-    if (bsdf->kind != TY_BSDF_CDRF_EXIT)
+    if (bsdf->kind != TY_BSDF_CDRF_EXIT && bsdf->kind != TY_BSDF_MATTE)
         return;
     counters->interior_rays += bsdf->flights > 0 ? bsdf->flights : 1;
     counters->walks_lost += bsdf->walk_end == TY_WALK_LOST;

@@ -93,6 +93,9 @@ typedef uint32_t u32x8 __attribute__((vector_size(32)));
 typedef int32_t s32x8 __attribute__((vector_size(32)));
 typedef float f32x8 __attribute__((vector_size(32)));
 typedef uint8_t u8x32 __attribute__((vector_size(32)));
+typedef int32_t s32x4 __attribute__((vector_size(16)));
+typedef float f32x4 __attribute__((vector_size(16)));
+typedef uint8_t u8x16 __attribute__((vector_size(16)));
 
 // The point of a group, before its scrambling, and the seed of that.
 static inline u32x4 group_point(const ty_sampler* s, uint32_t group, uint32_t* seed)
@@ -108,15 +111,32 @@ static inline u32x4 group_point(const ty_sampler* s, uint32_t group, uint32_t* s
 
 #define DIMENSION_STEP 0x9e3779b9u // between the seeds of a group's dimensions
 
+// Side by side: mix32, the scrambling, reversed bits within bytes, reversed bytes.
 void ty_sampler_4d(const ty_sampler* sampler, uint32_t group, float u[4])
 {
-    uint32_t seed;
-    u32x4 x = group_point(sampler, group, &seed);
-    for (uint32_t d = 0; d < 4; ++d)
-        u[d] = ty_u32_to_float(reverse_bits(scramble_reversed(x[d], ty_mix32(seed + d * DIMENSION_STEP))));
+    uint32_t s;
+    u32x4 x = group_point(sampler, group, &s), seed = (u32x4){s, s, s, s} + (u32x4){0, 1, 2, 3} * DIMENSION_STEP;
+    seed ^= seed >> 16;
+    seed *= 0x7feb352du;
+    seed ^= seed >> 15;
+    seed *= 0x846ca68bu;
+    seed ^= seed >> 16;
+
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= seed >> 16 | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+
+    x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+    x = (u32x4)__builtin_shufflevector((u8x16)x, (u8x16)x, 3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12);
+    f32x4 unit = __builtin_convertvector((s32x4)(x >> 8), f32x4) * 0x1p-24f;
+    memcpy(u, &unit, sizeof unit);
 }
 
-// The same side by side: mix32, the scrambling, reversed bits within bytes, reversed bytes.
+// The same, twice as wide.
 void ty_sampler_8d(const ty_sampler* sampler, uint32_t group, float u[8])
 {
     uint32_t a, b;

@@ -223,6 +223,11 @@ bool ty_bsdf_take_interior(ty_bsdf* b, const ty_shading_context* context, const 
         b->point = exit;
     b->kind = TY_BSDF_CDRF_EXIT;
     b->bent = false; // the map is the coat's
+    if (b->coat_weight <= 0.0f)
+    {
+        b->kind = TY_BSDF_MATTE;
+        b->color = ty_rgb_grey(1.0f);
+    }
     b->frame = ty_frame_from_normal(b->point.ns);
     return !ty_rgb_is_black(*weight);
 }

@@ -63,15 +63,6 @@ static float interpolate(const ty_mesh* mesh, const ty_surface_point* x, const f
 
 // --- the space ---
 
-// Whether the map keeps angles, to rounding; its stretch squared.
-static bool is_similarity(const ty_affine* m, float* stretch_sqr)
-{
-    float xx = ty_dot(m->x, m->x), yy = ty_dot(m->y, m->y), zz = ty_dot(m->z, m->z), least = 1e-4f * xx;
-    *stretch_sqr = (xx + yy + zz) * (1.0f / 3.0f);
-    return fabsf(yy - xx) < least && fabsf(zz - xx) < least && fabsf(ty_dot(m->x, m->y)) < least &&
-           fabsf(ty_dot(m->y, m->z)) < least && fabsf(ty_dot(m->z, m->x)) < least;
-}
-
 // The spheroid under a map that keeps no angles is an ellipsoid: its chord along the new normal, and its curvature
 // there. n is unit, of the prototype; closer = |M^-T n|^-1.
 static void deform(interior* in, ty_vec3 n, ty_form form, float closer)
@@ -116,7 +107,7 @@ static void interior_begin(const ty_bsdf* b, const ty_world* world, const ty_dep
     bool formed = in->directional || which == TY_CDRF_CURVATURE_MAXIMAL;
     float stretch_sqr;
     ty_vec3 n = ty_map_transpose(&to_world, x->ns);
-    if (is_similarity(&to_world, &stretch_sqr))
+    if (ty_keeps_angles(&to_world, &stretch_sqr))
     {
         in->unit = sqrtf(stretch_sqr);
         n = ty_normalize(n);
@@ -160,9 +151,10 @@ static ty_spheroid_exit spheroid_at(const interior* in, float depth, float x, fl
 
 static crossing trace(const interior* in, ty_vec3 p, ty_vec3 w, ty_hit* hit)
 {
-    if (!ty_world_intersect_prototype(in->world, in->prototype, p, w, in->thickness, hit))
+    bool behind;
+    if (!ty_world_intersect_prototype(in->world, in->prototype, p, w, in->thickness, hit, &behind))
         return CROSSING_NONE;
-    return ty_dot(triangle_normal(in->mesh, hit->triangle), w) >= 0.0f ? CROSSING_EXIT : CROSSING_ENTRY;
+    return behind ? CROSSING_EXIT : CROSSING_ENTRY;
 }
 
 // The walk goes on where nothing was met within D.
@@ -184,7 +176,7 @@ static crossing walk_on(const interior* in, ty_vec3 p, ty_vec3 w, ty_rng* extra,
 static bool sees(const interior* in, ty_vec3 p, ty_vec3 way)
 {
     ty_hit hit;
-    return !ty_world_intersect_prototype(in->world, in->prototype, p, way, 0.999f, &hit);
+    return !ty_world_intersect_prototype(in->world, in->prototype, p, way, 0.999f, &hit, NULL);
 }
 
 // What an exit that channel `chosen` found at once is worth to each: its density for the channel over the mean of all

@@ -40,6 +40,15 @@ ty_form ty_form_world(const ty_world* world, const ty_surface_point* point, ty_v
 {
     const ty_mesh* mesh = ty_world_mesh(world, point->object, point->instance);
     ty_affine to_world = ty_world_to_world(world, point->object, point->instance, point->time);
+    float stretch_sqr;
+    if (ty_keeps_angles(&to_world, &stretch_sqr))
+    {
+        // M^-1 is M^T over the stretch squared
+        float stretch = sqrtf(stretch_sqr), over = 1.0f / stretch_sqr;
+        ty_form f = ty_form_local(mesh, point, ty_map_transpose(&to_world, t), ty_map_transpose(&to_world, b));
+        float scale = stretch * over * over;
+        return (ty_form){f.tt * scale, f.tb * scale, f.bb * scale};
+    }
     ty_affine to_local = ty_world_to_local(world, point->object, point->instance, point->time);
     ty_form form = ty_form_local(mesh, point, ty_map_vector(&to_local, t), ty_map_vector(&to_local, b));
     // ns is M^-T n over its length, so M^T ns is n over |M^-T n|

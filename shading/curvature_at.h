@@ -6,6 +6,15 @@
 // How much larger than its prototype the instance is: cbrt |det M|.
 float ty_instance_scale(const ty_affine* to_world);
 
+// Whether the map keeps angles, to rounding; its stretch squared.
+static inline bool ty_keeps_angles(const ty_affine* m, float* stretch_sqr)
+{
+    float xx = ty_dot(m->x, m->x), yy = ty_dot(m->y, m->y), zz = ty_dot(m->z, m->z), least = 1e-4f * xx;
+    *stretch_sqr = (xx + yy + zz) * (1.0f / 3.0f);
+    return fabsf(yy - xx) < least && fabsf(zz - xx) < least && fabsf(ty_dot(m->x, m->y)) < least &&
+           fabsf(ty_dot(m->y, m->z)) < least && fabsf(ty_dot(m->z, m->x)) < least;
+}
+
 // A symmetric form on the tangents of a unit normal: (t,t), (t,b), (b,b).
 typedef struct ty_form
 {

@@ -13,7 +13,7 @@ static void measure(const ty_world* world, uint32_t prototype, const ty_mesh* me
         ty_vec3 n = ty_normalize(mesh->normals[i]), inward = ty_neg(n);
         ty_hit hit;
         bool found = ty_world_intersect_prototype(world, prototype, ty_mad(mesh->positions[i], inward, step), inward,
-                                                  2.0f * size, &hit);
+                                                  2.0f * size, &hit, NULL);
         field->depth[i] = found ? ty_max(hit.t + step, 2.0f * step) : h * size > 2.0f ? 2.0f / h : size;
         field->curvature[i] = h;
     }

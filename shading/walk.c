@@ -53,7 +53,7 @@ static crossing find_end(body* b, ty_vec3 p, ty_vec3 direction, float length, ty
     float way = 0.0f;
     for (;;)
     {
-        if (!ty_world_intersect_prototype(b->world, b->prototype, p, direction, length - way, hit))
+        if (!ty_world_intersect_prototype(b->world, b->prototype, p, direction, length - way, hit, NULL))
             return length < TY_FLOAT_MAX ? CROSSING_NONE : CROSSING_LOST;
         bool out = ty_dot(triangle_normal(b->mesh, hit->triangle), direction) >= 0.0f;
         b->layers += out ? -1 : 1;

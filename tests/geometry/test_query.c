@@ -236,7 +236,7 @@ static void one_instance_alone(void** state)
     assert_false(
         ty_world_intersect_instance(s->world, 0, 0, 0.0f, (ty_vec3){5, 0, 0}, (ty_vec3){1, 0, 0}, 100.0f, &hit));
     assert_true(ty_world_intersect_prototype(s->world, s->sphere_prototype, (ty_vec3){0, 0, 0}, (ty_vec3){0, 2, 0},
-                                             10.0f, &hit));
+                                             10.0f, &hit, NULL));
     assert_true(fabsf(hit.t - 0.5f) < 1e-4f);
 }
 

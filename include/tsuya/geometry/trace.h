@@ -126,9 +126,10 @@ bool ty_world_occluded(const ty_world* world, const ty_ray* ray);
 // Against one instance alone, world space, as it stands at a time. Used for interior rays and probes.
 bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_t instance, float time, ty_vec3 origin,
                                  ty_vec3 direction, float t_max, ty_hit* hit);
-// The same against a prototype in its own space; direction need not be unit, t in its units.
+// The same against a prototype in its own space; direction need not be unit, t in its units. *behind: whether the
+// triangle was met from its inner side; NULL is allowed.
 bool ty_world_intersect_prototype(const ty_world* world, uint32_t prototype, ty_vec3 origin, ty_vec3 direction,
-                                  float t_max, ty_hit* hit);
+                                  float t_max, ty_hit* hit, bool* behind);
 
 typedef struct ty_closest
 {

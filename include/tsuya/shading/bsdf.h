@@ -14,10 +14,10 @@ typedef enum ty_bsdf_kind
 {
     TY_BSDF_SURFACE,    // layered: fuzz over coat over (metal | dielectric specular over diffuse | transmission)
     TY_BSDF_SUBSURFACE, // a surface and a share of its base that light enters, not yet resolved
-    TY_BSDF_MATTE,      // a surface that is nothing but Lambert
+    TY_BSDF_MATTE,      // nothing but Lambert: such a surface, or where light leaves a body without a coat
     TY_BSDF_CDRF,       // depth or probe, not yet resolved: call ty_bsdf_resolve
     TY_BSDF_CDRF_LOCAL, // kernel over the whole sphere at the point, plus coat
-    TY_BSDF_CDRF_EXIT,  // resolved: Lambert with (1 - F) at the exit point
+    TY_BSDF_CDRF_EXIT,  // resolved, under a coat: Lambert with (1 - F) at the exit point
     TY_BSDF_CDRF_COAT,  // resolved: the specular coat at the entry point
 } ty_bsdf_kind;
 
@@ -76,7 +76,7 @@ typedef struct ty_bsdf
     bool bent;     // the frame's normal is that of a map: directions on the wrong side of ng are mirrored in it
     const struct ty_material* material;
     ty_surface_point point; // where light is gathered; moves to the exit point on resolve
-    ty_frame frame;         // shading frame there, n on wo's side (CDRF_EXIT: outward)
+    ty_frame frame;         // shading frame there, n on wo's side (where light leaves a body: outward)
     ty_vec3 wo;
     ty_rgb emission; // leaving along wo
     ty_rgb color;    // base color or C
