@@ -196,7 +196,7 @@ static void arrive(const ty_integrator* in, float distance, ty_path* p)
     if (!in->has_media)
         return;
     p->absorption[0] = p->absorption[1] = p->view.absorption;
-    distance += p->lead;
+    distance = ty_max(distance + p->lead, 0.0f);
     const ty_medium* top = ty_media_top(&p->media);
     if (top && !ty_rgb_is_black(top->matter.albedo))
         ty_flight_pass(&top->matter, distance, &p->beta);

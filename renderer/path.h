@@ -22,7 +22,9 @@ typedef struct ty_path
     ty_rng rng;           // of scatterings in media
     int scatterings;      // in media
     float entered;        // largest channel of beta at the first of them since the last surface
-    float lead;           // m, of the way in the medium that lies before the ray's origin, which keeps off the surface
+    float lead;           // m, of the way in the medium before the ray's origin, which keeps off the surface; or less
+                          // than 0: what the origin lies before the ray's true start
+    ty_vec3 inward;       // normal of that surface, into the medium
     ty_rgb absorption[2]; // 1/m, of the media on wo's side of the present surface and beyond it
     ty_media media;       // the ray is in; last, because paths in air leave it untouched
 } ty_path;

@@ -27,8 +27,30 @@ static void turn(ty_path* p, ty_vec3 origin, ty_vec3 direction)
     p->soft = true;
 }
 
+// Cosine between the ray and the way into the medium, kept off zero.
+static float steepness(const ty_path* p)
+{
+    const float grazing = 1e-3f;
+    float cosine = ty_dot(p->ray.direction, p->inward);
+    return fabsf(cosine) > grazing ? cosine : cosine < 0.0f ? -grazing : grazing;
+}
+
+// How far the end of a flight lies above the plane that rays begin in; 0 = beneath. Up there the ray begins in the
+// plane all the same, and lead is what that changes of its way: were it moved down, mean free paths as short as
+// rounding would begin too deep and lose too much light.
+static float height(const ty_path* p, float flight)
+{
+    return p->lead == 0.0f ? 0.0f : ty_max((p->lead - flight) * steepness(p), 0.0f);
+}
+
 ty_path_flight ty_path_scatter(const ty_scattering* matter, float distance, ty_path* p, ty_counters* counters)
 {
+    // The bound on scatterings: straight out from here, so that what is white stays white.
+    if (p->scatterings >= TY_PATH_MAX_SCATTERINGS)
+    {
+        counters->walks_cut += p->scatterings++ == TY_PATH_MAX_SCATTERINGS;
+        return TY_PATH_PASSED;
+    }
     float u = ty_rng_float(&p->rng), flight = ty_flight_sample(matter, &p->beta, u, ty_rng_float(&p->rng));
     if (!(flight < distance + p->lead))
         return TY_PATH_PASSED;
@@ -36,18 +58,14 @@ ty_path_flight ty_path_scatter(const ty_scattering* matter, float distance, ty_p
     if (p->entered == 0.0f)
         p->entered = ty_rgb_max(p->beta);
     ty_flight_scatter(matter, flight, &p->beta);
-    if (++p->scatterings >= TY_PATH_MAX_SCATTERINGS)
-    {
-        counters->walks_cut++;
-        return TY_PATH_ENDED;
-    }
     if (!ty_flight_survives(p->entered, &p->beta, &p->rng))
         return TY_PATH_ENDED;
-    ty_vec3 origin = ty_mad(p->ray.origin, p->ray.direction, ty_max(flight - p->lead, 0.0f));
-    p->lead = 0.0f;
-    float time = p->ray.time;
+    p->scatterings++;
+    float time = p->ray.time, above = height(p, flight);
+    ty_vec3 origin = above > 0.0f ? p->ray.origin : ty_mad(p->ray.origin, p->ray.direction, flight - p->lead);
     u = ty_rng_float(&p->rng);
     turn(p, origin, ty_phase_sample(matter->anisotropy, p->ray.direction, (ty_vec2){u, ty_rng_float(&p->rng)}));
+    p->lead = above > 0.0f ? above / steepness(p) : 0.0f;
     p->ray.time = time;
     return TY_PATH_SCATTERED;
 }
@@ -127,6 +145,7 @@ void ty_path_keep_way(const ty_surface_point* point, ty_path* p)
 {
     const float grazing = 0.1f; // lower rays begin beside the surface
     float cosine = fabsf(ty_dot(p->ray.direction, point->ng));
+    p->inward = ty_dot(p->ray.direction, point->ng) < 0.0f ? ty_neg(point->ng) : point->ng;
     p->lead = p->media.count > 0 ? ty_offset_distance(point) / ty_max(cosine, grazing) : 0.0f;
     if (p->media.count > 0 && cosine > grazing)
         p->ray.origin = ty_mad(point->position, p->ray.direction, p->lead);

@@ -268,7 +268,7 @@ static bool walk_out(const ty_shading_context* context, ty_bsdf* b, const float 
     ty_walk walk;
     b->walk_end = ty_walk_through(context->world, &b->point, &matter, ty_walk_entry(&b->point, u), u[2], extra, &walk);
     b->flights = walk.scatterings + 1;
-    if (b->walk_end != TY_WALK_LEFT)
+    if (b->walk_end == TY_WALK_LOST)
         return false;
     *weight = ty_rgb_mul(*weight, walk.beta);
     *exit = walk.exit;

@@ -109,7 +109,9 @@ static ty_walk_end walk_on(body* b, ty_vec3 p, float u, const ty_scattering* mat
             return TY_WALK_LOST;
         way = ty_guide_next(guide, matter, walk->direction, rng);
     }
-    return TY_WALK_CUT;
+    // Straight out from here, so that what is white stays white.
+    bool out = find_end(b, p, ty_map_vector(&b->to_local, walk->direction), TY_FLOAT_MAX, hit) == CROSSING_OUT;
+    return out ? TY_WALK_CUT : TY_WALK_LOST;
 }
 
 static ty_walk_end run(body* b, uint32_t object, uint32_t instance, float time, ty_vec3 p, float u,
@@ -121,7 +123,7 @@ static ty_walk_end run(body* b, uint32_t object, uint32_t instance, float time, 
     walk->direction = direction;
     walk->scatterings = 0;
     ty_walk_end end = walk_on(b, p, u, matter, guide, rng, walk, &hit);
-    if (end != TY_WALK_LEFT)
+    if (end != TY_WALK_LEFT && end != TY_WALK_CUT)
         return end;
     hit.object = object;
     hit.instance = instance;

@@ -142,13 +142,13 @@ bool ty_walk_exit(const ty_shading_context* context, ty_bsdf* b, const float u[3
     switch (b->walk_end)
     {
     case TY_WALK_LEFT:
+    case TY_WALK_CUT:
         *weight = ty_rgb_mul(*weight, walk.beta);
         *exit = walk.exit;
         return true;
     case TY_WALK_LOST: // leaves where it entered
         break;
     case TY_WALK_ABSORBED:
-    case TY_WALK_CUT:
         *weight = ty_rgb_grey(0.0f);
         break;
     }

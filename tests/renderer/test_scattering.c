@@ -194,6 +194,33 @@ static void indirect_walks_can_be_left_out(void** state)
     assert_true(mean[2] > 1.2 * mean[0]); // so thin a ball absorbs little
 }
 
+// Mean free paths of a few roundings of the coordinates: the surface is as bright as with longer ones, wherever it is,
+// and walks that met their bound keep their light.
+static void short_paths_are_no_darker(void** state)
+{
+    (void)state;
+    static const char* const colors[2] = {"subsurface_color: 0.8, subsurface_radius: 0.006",
+                                          "color: 1, mean_free_path: 0.001"};
+    for (int i = 0; i < 4; i++)
+    {
+        char text[2048];
+        double height = i < 2 ? 0.0 : 2.0;
+        snprintf(text, sizeof text,
+                 "tsuya: 1\n"
+                 "film: { size: [16, 16], filter: box, filter_width: 1, half: false }\n"
+                 "camera: { position: [0, %g, 1], look_at: [0, %g, 0], projection: orthographic, ortho_height: 0.0022 "
+                 "}\n"
+                 "render: { samples: 64, max_depth: 1000, roulette_depth: 1000, seed: 3 }\n"
+                 "assets: { ball: { shape: sphere, radius: 0.001, divisions: 160 } }\n"
+                 "lights: [ { type: environment, radiance: 1 } ]\n"
+                 "materials: { m: { model: walk, boundary: %s, %s, specular_roughness: 0 } }\n"
+                 "objects: [ { mesh: ball, material: m, translate: [0, %g, 0] } ]\n",
+                 height, height, i == 1 ? "diffuse" : "dielectric", colors[i % 2], height);
+        double kept = 1.0 - (1.0 - mean_of(text)) / (PI / (2.2 * 2.2));
+        near(kept, i % 2 ? 1.0 : 0.832, i % 2 ? 0.003 : 0.012);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -202,6 +229,7 @@ int main(void)
         cmocka_unit_test(colour_counts_inner_reflection),
         cmocka_unit_test(overlapping_and_from_within),
         cmocka_unit_test(pure_absorption_is_dark),
+        cmocka_unit_test(short_paths_are_no_darker),
         cmocka_unit_test(lamps_are_met_or_sampled),
         cmocka_unit_test(indirect_walks_can_be_left_out),
     };

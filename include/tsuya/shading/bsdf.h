@@ -27,7 +27,7 @@ typedef enum ty_walk_end
     TY_WALK_LEFT,     // at the surface
     TY_WALK_ABSORBED, // by chance, in proportion to what was left of it
     TY_WALK_LOST,     // through a hole of the mesh
-    TY_WALK_CUT,      // by the bound on flights
+    TY_WALK_CUT,      // by the bound on flights: left straight on
 } ty_walk_end;
 
 // Directional albedo E(mu) of a reflecting layer at the point's roughness: up to four table slices and their weights.

@@ -41,7 +41,8 @@ typedef struct ty_walk
 
 // A walk through the instance of x, that begins there, inwards along a unit direction in the world, and ends at the
 // first crossing of the boundary to the outside. Other instances do not exist for it. u: for the length of its first
-// flight. Of walk, what is beyond beta and scatterings is set when it left.
+// flight. Of walk, what is beyond beta and scatterings is set when it left, or met the bound: it then leaves straight
+// on.
 ty_walk_end ty_walk_through(const ty_world* world, const ty_surface_point* x, const ty_scattering* matter,
                             ty_vec3 direction, float u, ty_rng* rng, ty_walk* walk);
 // The same from a point within an instance.
