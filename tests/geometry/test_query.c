@@ -235,9 +235,13 @@ static void one_instance_alone(void** state)
     assert_false(ty_world_intersect_instance(s->world, 0, 0, 0.0f, (ty_vec3){0, 0, 0}, (ty_vec3){0, 0, 1}, 0.4f, &hit));
     assert_false(
         ty_world_intersect_instance(s->world, 0, 0, 0.0f, (ty_vec3){5, 0, 0}, (ty_vec3){1, 0, 0}, 100.0f, &hit));
+    bool behind = false;
     assert_true(ty_world_intersect_prototype(s->world, s->sphere_prototype, (ty_vec3){0, 0, 0}, (ty_vec3){0, 2, 0},
-                                             10.0f, &hit, NULL));
-    assert_true(fabsf(hit.t - 0.5f) < 1e-4f);
+                                             10.0f, &hit, &behind));
+    assert_true(behind && fabsf(hit.t - 0.5f) < 1e-4f);
+    assert_true(ty_world_intersect_prototype(s->world, s->sphere_prototype, (ty_vec3){0, -3, 0}, (ty_vec3){0, 2, 0},
+                                             10.0f, &hit, &behind));
+    assert_false(behind);
 }
 
 static void uv_and_fields_are_linear(void** state)
