@@ -32,6 +32,23 @@ absent x.01.exr
 expect 4 "$tsuya" fill fill.yaml -o 'nowhere/x.##.exr'
 says "nowhere"
 
+# Eggs of fish: what they are not is said with place and range.
+cat >roe.yaml <<'Y'
+tsuya: 1
+kind: aggregate
+element: { kind: roe, roe: { preset: ikra, diameter: 60, yolk: 0.9, lien: 3 } }
+Y
+expect 3 "$tsuya" pack roe.yaml -o roe.glb
+says "roe.yaml:3:38: 'preset': 'ikra' is not one of"
+says "did you mean 'ikura'?"
+says "roe.yaml:3:54: 'diameter' is 60: out of range, expected a number 0..50 mm"
+says "'yolk' is 0.9: out of range, expected a number 0..0.5"
+says "unknown key 'lien' in aggregate.element.roe"
+printf 'tsuya: 1\nkind: aggregate\nelement: { kind: roe, roe: { membrane: 3 } }\n' >roe.yaml
+expect 3 "$tsuya" pack roe.yaml -o roe.glb
+says "element.roe.membrane: 3 mm; with a diameter of 6.2 mm it lies in 0.0062..0.62"
+absent roe.glb
+
 for threads in 1 3; do
     expect 0 "$tsuya" fill fill.yaml -o "t$threads.##.exr" --threads $threads
     expect 0 "$tsuya" roots roots.yaml -o "t$threads.ply" --threads $threads
