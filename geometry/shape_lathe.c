@@ -107,38 +107,52 @@ static void add_line(ty_profile* profile, const turned* t, int i)
 
 // --- curves ---
 
+// Through points, with continuous curvature: reflections and `local` show where it jumps.
 typedef struct spline
 {
-    const turned* profile;
-    int first, last; // points; those between are smooth
+    int first, last;          // points; those between are smooth
+    double knot[MOST_POINTS]; // parameter from each point to the next, the root of the distance (centripetal)
+    double r[MOST_POINTS], y[MOST_POINTS];
+    double slope_r[MOST_POINTS], slope_y[MOST_POINTS]; // by the parameter
 } spline;
 
-typedef struct plane_point
+// Slopes with which the second derivatives of neighbouring cubics agree (de Boor 1978, chapter 4), by the tridiagonal
+// system. At an end it is zero, or the slope where `level` says so.
+static void solve_slopes(const spline* s, const double* p, const bool level[2], double* slope)
 {
-    double r, y;
-} plane_point;
-
-// Beyond its ends a curve goes on straight, or as its mirror image where it meets the axis.
-static plane_point spline_point(const spline* s, int i)
-{
-    if (i >= s->first && i <= s->last)
-        return (plane_point){r_at(s->profile, i), y_at(s->profile, i)};
-    int end = i < s->first ? s->first : s->last, other = 2 * end - i;
-    double r = r_at(s->profile, end), y = y_at(s->profile, end);
-    if (r == 0.0)
-        return (plane_point){-r_at(s->profile, other), y_at(s->profile, other)};
-    return (plane_point){2.0 * r - r_at(s->profile, other), 2.0 * y - y_at(s->profile, other)};
+    int n = s->last - s->first;
+    double upper[MOST_POINTS];
+    for (int i = 0; i <= n; i++)
+    {
+        double before = i > 0 ? 1.0 / s->knot[i - 1] : 0.0, after = i < n ? 1.0 / s->knot[i] : 0.0;
+        double right = i > 0 ? 3.0 * (p[i] - p[i - 1]) * before * before : 0.0;
+        right += i < n ? 3.0 * (p[i + 1] - p[i]) * after * after : 0.0;
+        double middle = 2.0 * (before + after);
+        if ((i == 0 && level[0]) || (i == n && level[1]))
+            before = after = right = 0.0, middle = 1.0;
+        double pivot = middle - (i > 0 ? before * upper[i - 1] : 0.0);
+        upper[i] = after / pivot;
+        slope[i] = (right - (i > 0 ? before * slope[i - 1] : 0.0)) / pivot;
+    }
+    for (int i = n - 1; i >= 0; i--)
+        slope[i] -= upper[i] * slope[i + 1];
 }
 
-// Tangent at b, between a and c, times the parameter's step d (centripetal Catmull-Rom, Yuksel et al. 2011).
-static double tangent(double a, double b, double c, double ab, double bc, double d)
+// Where it meets the axis a curve is its own mirror image; at other ends it goes on straight.
+static spline spline_make(const turned* t, int first, int last)
 {
-    return d * ((b - a) / ab - (c - a) / (ab + bc) + (c - b) / bc);
-}
-
-static double knot(plane_point a, plane_point b)
-{
-    return sqrt(hypot(b.r - a.r, b.y - a.y));
+    spline s = {.first = first, .last = last};
+    int n = last - first;
+    for (int i = 0; i <= n; i++)
+    {
+        s.r[i] = r_at(t, first + i);
+        s.y[i] = y_at(t, first + i);
+        if (i > 0)
+            s.knot[i - 1] = sqrt(hypot(s.r[i] - s.r[i - 1], s.y[i] - s.y[i - 1]));
+    }
+    solve_slopes(&s, s.r, (const bool[2]){false, false}, s.slope_r);
+    solve_slopes(&s, s.y, (const bool[2]){s.r[0] == 0.0, s.r[n] == 0.0}, s.slope_y);
+    return s;
 }
 
 // Hermite's cubic with value, first and second derivative at t.
@@ -153,15 +167,10 @@ static void cubic(double p, double q, double m, double n, double t, double out[3
 static ty_profile_point spline_at(const void* context, double t)
 {
     const spline* s = context;
-    int i = (int)fmin(floor(t), s->last - 1.0);
-    plane_point p[4];
-    for (int k = 0; k < 4; k++)
-        p[k] = spline_point(s, i - 1 + k);
-    double ab = knot(p[0], p[1]), bc = knot(p[1], p[2]), cd = knot(p[2], p[3]), r[3], y[3];
-    cubic(p[1].r, p[2].r, tangent(p[0].r, p[1].r, p[2].r, ab, bc, bc), tangent(p[1].r, p[2].r, p[3].r, bc, cd, bc),
-          t - i, r);
-    cubic(p[1].y, p[2].y, tangent(p[0].y, p[1].y, p[2].y, ab, bc, bc), tangent(p[1].y, p[2].y, p[3].y, bc, cd, bc),
-          t - i, y);
+    int i = (int)fmin(floor(t), s->last - 1.0) - s->first, k = i + 1;
+    double h = s->knot[i], at = t - s->first - i, r[3], y[3];
+    cubic(s->r[i], s->r[k], h * s->slope_r[i], h * s->slope_r[k], at, r);
+    cubic(s->y[i], s->y[k], h * s->slope_y[i], h * s->slope_y[k], at, y);
     double speed = fmax(hypot(r[1], y[1]), 1e-300);
     return (ty_profile_point){.r = r[0],
                               .y = y[0],
@@ -211,7 +220,7 @@ static int run_end(const turned* t, int first)
 
 static ty_status check_curve(const turned* t, int first, int last, ty_error* error)
 {
-    const spline s = {t, first, last};
+    const spline s = spline_make(t, first, last);
     for (int k = 0; k <= 64 * (last - first); k++)
     {
         double at = first + k / 64.0;
@@ -253,7 +262,10 @@ void ty_shape_build_lathe(ty_shape_build* build, const ty_shape_def* def)
         if (last == i + 1)
             add_line(&profile, &t, i);
         else
-            ty_profile_curve(&profile, spline_at, &(spline){&t, i, last}, i, last);
+        {
+            spline s = spline_make(&t, i, last);
+            ty_profile_curve(&profile, spline_at, &s, i, last);
+        }
         i = last;
     }
     bool ring = r_at(&t, 0) == r_at(&t, t.count - 1) && y_at(&t, 0) == y_at(&t, t.count - 1);

@@ -729,6 +729,12 @@ static void test_lathe_turns_known_solids(void** state)
         {{0, 0}, 0, false}, ball[0], ball[1], ball[2], ball[3], ball[4], ball[5], ball[6], ball[7], ball[8]};
     ty_mesh* mesh = lathe(half, 10, 256);
     check_lathe(mesh, 2 * pi / 3 * 0.03 * 0.03 * 0.03, 2e-3);
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        if (mesh->positions[i].y > 0.02f) // its lower end is straight
+        {
+            assert_float_equal(0.03f * mesh->curvature_1[i], 1.0f, 0.02f);
+            assert_float_equal(0.03f * mesh->curvature_2[i], 1.0f, 0.02f);
+        }
     ty_mesh_destroy(mesh);
     // A ring: it ends where it began.
     const ty_shape_point ring[5] = {{{0.02f, 0}, 0, false},
