@@ -5,13 +5,14 @@
 enum
 {
     FIT_ROUNDS = 60,
+    RICE_BALLS = 10, // two rows, so that an elliptical section is met
 };
 
 static int nearest_ball(const ty_ball* balls, ty_vec3 p, float* distance)
 {
     int best = 0;
     *distance = TY_FLOAT_MAX;
-    for (int i = 0; i < TY_GRAIN_BALLS; i++)
+    for (int i = 0; i < RICE_BALLS; i++)
     {
         float d = ty_length(ty_sub(p, balls[i].center)) - balls[i].radius;
         if (d < *distance)
@@ -63,14 +64,14 @@ static void equations_solve(normal_equations* eq, double x[4])
 
 static void fit_round(const ty_vec3* points, uint32_t count, ty_ball* balls)
 {
-    normal_equations eq[TY_GRAIN_BALLS] = {0};
+    normal_equations eq[RICE_BALLS] = {0};
     for (uint32_t i = 0; i < count; i++)
     {
         float distance;
         int b = nearest_ball(balls, points[i], &distance);
         equations_add(&eq[b], &balls[b], points[i], distance);
     }
-    for (int b = 0; b < TY_GRAIN_BALLS; b++)
+    for (int b = 0; b < RICE_BALLS; b++)
         if (eq[b].weight >= 4.0)
         {
             double x[4];
@@ -84,7 +85,7 @@ static void fit_round(const ty_vec3* points, uint32_t count, ty_ball* balls)
 // Rows at +-offset across the width, staggered along the bent axis, and one ball in each end.
 static void balls_start(ty_vec3 half, float bend, ty_ball* balls)
 {
-    const int n = TY_GRAIN_BALLS;
+    const int n = RICE_BALLS;
     float r = 0.5f * (half.y + half.z), inner = half.x - 0.92f * half.z;
     for (int i = 0; i < n; i++)
     {
@@ -99,9 +100,9 @@ static void balls_start(ty_vec3 half, float bend, ty_ball* balls)
 // The balls' hull about the line between the end balls: for quick rejection.
 static float capsule_radius(const ty_ball* balls)
 {
-    ty_vec3 from = balls[0].center, axis = ty_sub(balls[TY_GRAIN_BALLS - 1].center, from);
+    ty_vec3 from = balls[0].center, axis = ty_sub(balls[RICE_BALLS - 1].center, from);
     float radius = 0.0f;
-    for (int i = 0; i < TY_GRAIN_BALLS; i++)
+    for (int i = 0; i < RICE_BALLS; i++)
     {
         ty_vec3 d = ty_sub(balls[i].center, from);
         float s = ty_clamp(ty_dot(d, axis) / ty_max(ty_length_sqr(axis), 1e-12f), 0.0f, 1.0f);
@@ -110,9 +111,9 @@ static float capsule_radius(const ty_ball* balls)
     return radius;
 }
 
-void ty_balls_fit(const ty_vec3* points, uint32_t count, ty_vec3 half_size, float bend, ty_grain* grain)
+void ty_balls_fit(const ty_vec3* points, uint32_t count, ty_vec3 half_size, float bend, ty_element* grain)
 {
-    grain->ball_count = TY_GRAIN_BALLS;
+    grain->ball_count = RICE_BALLS;
     balls_start(half_size, bend, grain->balls);
     for (int i = 0; i < FIT_ROUNDS; i++)
         fit_round(points, count, grain->balls);
@@ -126,7 +127,7 @@ void ty_balls_fit(const ty_vec3* points, uint32_t count, ty_vec3 half_size, floa
         grain->fit_max = ty_max(grain->fit_max, fabsf(d));
     }
     grain->fit_rms = (float)sqrt(sum / (double)count);
-    for (int i = 0; i < TY_GRAIN_BALLS; i++) // a hair's breadth between surfaces looks better than a cut
+    for (int i = 0; i < RICE_BALLS; i++) // a hair's breadth between surfaces looks better than a cut
         grain->balls[i].radius += 0.25f * grain->fit_rms;
     grain->capsule = capsule_radius(grain->balls);
 }

@@ -143,12 +143,12 @@ static float segments_distance_sqr(ty_vec3 p, ty_vec3 d, ty_vec3 q, ty_vec3 e)
 static bool capsules_meet(const ty_pile* pile, int a, int b, float margin)
 {
     const ty_ball *p = pile_balls(pile, a), *q = pile_balls(pile, b);
-    const int last = TY_GRAIN_BALLS - 1;
+    const int last_p = pile_ball_count(pile, a) - 1, last_q = pile_ball_count(pile, b) - 1;
     float reach = pile->def.grains[pile->bodies[a].grain].capsule * pile->bodies[a].scale;
     reach += pile->def.grains[pile->bodies[b].grain].capsule * pile->bodies[b].scale;
     reach = reach * pile->growth + margin;
-    return segments_distance_sqr(p[0].center, ty_sub(p[last].center, p[0].center), q[0].center,
-                                 ty_sub(q[last].center, q[0].center)) < reach * reach;
+    return segments_distance_sqr(p[0].center, ty_sub(p[last_p].center, p[0].center), q[0].center,
+                                 ty_sub(q[last_q].center, q[0].center)) < reach * reach;
 }
 
 static void touches_find(ty_pile* pile, int a, int b, float margin)
@@ -158,8 +158,8 @@ static void touches_find(ty_pile* pile, int a, int b, float margin)
         return;
     const ty_body* other = &pile->bodies[b];
     float radius = pile->def.grains[other->grain].radius * other->scale * pile->growth + margin;
-    const int of_a = pile->def.grains[pile->bodies[a].grain].ball_count;
-    const int of_b = pile->def.grains[other->grain].ball_count;
+    const int of_a = pile_ball_count(pile, a);
+    const int of_b = pile_ball_count(pile, b);
     for (int i = 0; i < of_a; i++)
     {
         if (ty_length_sqr(ty_sub(p[i].center, other->position)) > ty_sqr(radius + p[i].radius))
@@ -203,7 +203,7 @@ static void walls_find(ty_pile* pile)
         int first = pile->touch_count;
         const ty_ball* balls = pile_balls(pile, i);
         float margin = pile->poses[i].reach;
-        const int ball_count = pile->def.grains[pile->bodies[i].grain].ball_count;
+        const int ball_count = pile_ball_count(pile, i);
         for (int k = 0; k < ball_count; k++)
         {
             ty_vec3 n;

@@ -2,7 +2,7 @@
 // The rice grain: a box grid wrapped around a blunt ellipsoid and bent, tapered, ridged and dented into a cooked grain.
 #include "balls.h"
 #include <string.h>
-#include <tsuya/generate/grain.h>
+#include <tsuya/generate/element.h>
 
 // What makes one variant differ from the next.
 typedef struct shape
@@ -18,20 +18,20 @@ typedef struct shape
     float lump[3];          // m
 } shape;
 
-ty_grain_def ty_grain_def_default(void)
+ty_element_def ty_element_def_default(void)
 {
-    return (ty_grain_def){.kind = TY_GRAIN_RICE,
-                          .length = 7.2e-3f,
-                          .width = 3.0e-3f,
-                          .thickness = 2.5e-3f,
-                          .variation = 0.06f,
-                          .variants = 16,
-                          .notch = 0.15f,
-                          .divisions = 9,
-                          .roe = {.lean = TY_PI / 4.0f, .press = 0.012f}};
+    return (ty_element_def){.kind = TY_ELEMENT_RICE,
+                            .length = 7.2e-3f,
+                            .width = 3.0e-3f,
+                            .thickness = 2.5e-3f,
+                            .variation = 0.06f,
+                            .variants = 16,
+                            .notch = 0.15f,
+                            .divisions = 9,
+                            .roe = {.lean = TY_PI / 4.0f, .press = 0.012f}};
 }
 
-float ty_grain_bell(ty_rng* rng)
+float ty_element_bell(ty_rng* rng)
 {
     float sum = 0.0f;
     for (int i = 0; i < 4; i++)
@@ -47,19 +47,19 @@ static ty_vec3 blunt_ellipsoid(const shape* s, ty_vec3 u)
     return ty_vec3_make(s->a * u.x, s->b * u.y * k, s->c * u.z * k);
 }
 
-static shape shape_draw(const ty_grain_def* def, ty_seed seed, int variant)
+static shape shape_draw(const ty_element_def* def, ty_seed seed, int variant)
 {
     ty_rng rng = ty_rng_make(seed, 0x6772616e, (uint64_t)variant);
     float bell[3];
     for (int i = 0; i < 3; i++)
-        bell[i] = ty_clamp(ty_grain_bell(&rng), -2.0f, 2.0f) * def->variation;
+        bell[i] = ty_clamp(ty_element_bell(&rng), -2.0f, 2.0f) * def->variation;
     shape s = {.a = 0.5f * def->length * (1.0f + bell[0]), .b = 0.5f * def->width * (1.0f + 0.8f * bell[1])};
     s.c = 0.5f * def->thickness * (1.0f + 0.4f * bell[1] + 0.7f * bell[2]);
     s.c = ty_min(s.c, s.b);
-    s.taper = 0.06f + 0.03f * ty_grain_bell(&rng);
-    s.bend = s.a * (0.05f + 0.045f * ty_grain_bell(&rng));
-    s.twist = 0.08f * ty_grain_bell(&rng);
-    s.notch = 2.0f * s.b * def->notch * (1.0f + 0.2f * ty_grain_bell(&rng));
+    s.taper = 0.06f + 0.03f * ty_element_bell(&rng);
+    s.bend = s.a * (0.05f + 0.045f * ty_element_bell(&rng));
+    s.twist = 0.08f * ty_element_bell(&rng);
+    s.notch = 2.0f * s.b * def->notch * (1.0f + 0.2f * ty_element_bell(&rng));
     for (int i = 0; i < 2; i++)
     {
         s.ridge[i] = s.b * (i ? 0.014f : 0.026f);
@@ -67,9 +67,9 @@ static shape shape_draw(const ty_grain_def* def, ty_seed seed, int variant)
     }
     for (int i = 0; i < 3; i++)
     {
-        float x = ty_rng_range(&rng, -0.9f, 0.9f), y = ty_grain_bell(&rng), z = ty_grain_bell(&rng);
+        float x = ty_rng_range(&rng, -0.9f, 0.9f), y = ty_element_bell(&rng), z = ty_element_bell(&rng);
         s.lump_center[i] = blunt_ellipsoid(&s, ty_normalize(ty_vec3_make(x, y, z)));
-        s.lump[i] = s.b * 0.04f * ty_grain_bell(&rng);
+        s.lump[i] = s.b * 0.04f * ty_element_bell(&rng);
     }
     return s;
 }
@@ -286,7 +286,7 @@ static void symmetric_inverse(const double s[6], float out[6])
 }
 
 // Moves the centre of mass to the origin; smooth holds the surface without its dent, which the balls are fitted to.
-static void grain_finish(ty_grain* grain, const shape* s, ty_vec3* smooth)
+static void grain_finish(ty_element* grain, const shape* s, ty_vec3* smooth)
 {
     ty_mesh* mesh = grain->mesh;
     double volume, center[3], inertia[6];
@@ -304,7 +304,7 @@ static void grain_finish(ty_grain* grain, const shape* s, ty_vec3* smooth)
     grain->radius = 0.0f;
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
         grain->radius = ty_max(grain->radius, ty_length(mesh->positions[i]));
-    for (int i = 0; i < TY_GRAIN_BALLS; i++)
+    for (int i = 0; i < grain->ball_count; i++)
         grain->radius = ty_max(grain->radius, ty_length(grain->balls[i].center) + grain->balls[i].radius);
     ty_mesh_compute_bounds(mesh);
     ty_mesh_compute_welds(mesh);
@@ -312,7 +312,7 @@ static void grain_finish(ty_grain* grain, const shape* s, ty_vec3* smooth)
     ty_mesh_compute_curvature(mesh, 2);
 }
 
-ty_status ty_grain_init(const ty_grain_def* def, ty_seed seed, int variant, ty_grain* out, ty_error* error)
+ty_status ty_rice_init(const ty_element_def* def, ty_seed seed, int variant, ty_element* out, ty_error* error)
 {
     memset(out, 0, sizeof *out);
     shape s = shape_draw(def, seed, variant);
@@ -339,7 +339,7 @@ ty_status ty_grain_init(const ty_grain_def* def, ty_seed seed, int variant, ty_g
     }
     else
     {
-        ty_grain_term(out);
+        ty_element_term(out);
         status = ty_error_set(error, TY_NO_MEMORY, "no memory for a grain of %d divisions", def->divisions);
     }
     ty_free(smooth);
@@ -347,7 +347,7 @@ ty_status ty_grain_init(const ty_grain_def* def, ty_seed seed, int variant, ty_g
     return status;
 }
 
-void ty_grain_term(ty_grain* grain)
+void ty_element_term(ty_element* grain)
 {
     ty_mesh_destroy(grain->mesh);
     memset(grain, 0, sizeof *grain);

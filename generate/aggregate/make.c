@@ -17,7 +17,7 @@ typedef struct kit
 {
     const ty_aggregate_recipe* recipe; // complete
     ty_workers* workers;
-    ty_grain grains[TY_GRAIN_MAX_VARIANTS];
+    ty_element grains[TY_ELEMENT_MAX_VARIANTS];
     int grain_count;
     float volume; // m^3, of the mean grain
     ty_container* container;
@@ -42,9 +42,10 @@ static ty_quat rotation_draw(const ty_fill_def* fill, float steepest, ty_rng* rn
 static ty_body body_draw(kit* k, ty_vec3 position, float steepest)
 {
     ty_body body = {.position = position, .rotation = rotation_draw(&k->recipe->fill, steepest, &k->rng)};
-    const ty_grain_def* element = &k->recipe->element; // meshes of grains differ in size already
-    float spread = element->kind == TY_GRAIN_RICE ? 0.3f : 1.0f, most = element->kind == TY_GRAIN_RICE ? 0.1f : 0.3f;
-    body.scale = 1.0f + ty_clamp(spread * element->variation * ty_grain_bell(&k->rng), -most, most);
+    const ty_element_def* element = &k->recipe->element; // meshes of grains differ in size already
+    float spread = element->kind == TY_ELEMENT_RICE ? 0.3f : 1.0f,
+          most = element->kind == TY_ELEMENT_RICE ? 0.1f : 0.3f;
+    body.scale = 1.0f + ty_clamp(spread * element->variation * ty_element_bell(&k->rng), -most, most);
     body.grain = ty_rng_u32(&k->rng) % (uint32_t)k->grain_count;
     return body;
 }
@@ -53,7 +54,7 @@ static ty_body body_draw(kit* k, ty_vec3 position, float steepest)
 
 static ty_status recipe_check(const ty_aggregate_recipe* r, ty_error* error)
 {
-    const ty_grain_def* e = &r->element;
+    const ty_element_def* e = &r->element;
     if (!(e->width > 0.0f && e->length >= e->width && e->length <= 12.0f * e->width))
         return ty_error_set(error, TY_BAD_INPUT, "element.length: %g mm; with a width of %g mm it lies in %g..%g",
                             (double)e->length * 1e3, (double)e->width * 1e3, (double)e->width * 1e3,
@@ -62,9 +63,9 @@ static ty_status recipe_check(const ty_aggregate_recipe* r, ty_error* error)
         return ty_error_set(error, TY_BAD_INPUT, "element.thickness: %g mm; with a width of %g mm it lies in %g..%g",
                             (double)e->thickness * 1e3, (double)e->width * 1e3, (double)e->width * 500.0,
                             (double)e->width * 1e3);
-    if (e->variants < 1 || e->variants > TY_GRAIN_MAX_VARIANTS)
+    if (e->variants < 1 || e->variants > TY_ELEMENT_MAX_VARIANTS)
         return ty_error_set(error, TY_BAD_INPUT, "element.variants: %d; it lies in 1..%d", e->variants,
-                            TY_GRAIN_MAX_VARIANTS);
+                            TY_ELEMENT_MAX_VARIANTS);
     if (r->fill.count < 1 || r->fill.count > 200000)
         return ty_error_set(error, TY_BAD_INPUT, "fill.count: %d; it lies in 1..200000", r->fill.count);
     if (!(r->fill.density >= 0.3f && r->fill.density <= 0.68f))
@@ -77,7 +78,7 @@ static ty_status container_check(const kit* k, ty_error* error)
     ty_bounds b = ty_container_interior(k->container);
     ty_vec3 size = ty_sub(b.high, b.low);
     float least = ty_min(size.x, ty_min(size.y, size.z)), most = ty_max(size.x, ty_max(size.y, size.z));
-    const ty_grain_def* e = &k->recipe->element;
+    const ty_element_def* e = &k->recipe->element;
     if (least >= 1.5f * e->width && most >= 1.5f * e->length)
         return TY_OK;
     return ty_error_set(
@@ -94,11 +95,11 @@ static ty_status grains_make(kit* k, ty_error* error)
 {
     for (; k->grain_count < k->recipe->element.variants; k->grain_count++)
     {
-        ty_grain* grain = &k->grains[k->grain_count];
-        const ty_grain_def* element = &k->recipe->element;
-        ty_status status = element->kind == TY_GRAIN_ROE
+        ty_element* grain = &k->grains[k->grain_count];
+        const ty_element_def* element = &k->recipe->element;
+        ty_status status = element->kind == TY_ELEMENT_ROE
                                ? ty_roe_init(element, grain, error)
-                               : ty_grain_init(element, k->recipe->seed, k->grain_count, grain, error);
+                               : ty_rice_init(element, k->recipe->seed, k->grain_count, grain, error);
         if (status != TY_OK)
             return status;
         k->volume += grain->volume / (float)k->recipe->element.variants;
@@ -199,9 +200,9 @@ static void floating_stir(kit* k, ty_body* bodies, const bool* held)
     for (int i = 0; i < ty_pile_count(k->pile); i++)
     {
         ty_vec3 push;
-        push.x = speed * ty_grain_bell(&k->rng);
-        push.y = speed * ty_grain_bell(&k->rng);
-        push.z = speed * ty_grain_bell(&k->rng);
+        push.x = speed * ty_element_bell(&k->rng);
+        push.y = speed * ty_element_bell(&k->rng);
+        push.z = speed * ty_element_bell(&k->rng);
         if (!held[i])
             bodies[i].velocity = push;
     }
@@ -270,9 +271,9 @@ static void attributes_write(const kit* k, ty_aggregate* out)
     {
         ty_rng rng = ty_rng_make(k->recipe->seed, 0x6d6f6973, i);
         float exposed = ty_exp(-depth[i] / k->recipe->element.length);
-        float m = 0.45f * wet->variation * ty_grain_bell(&rng) + wet->drying * (0.35f - exposed);
+        float m = 0.45f * wet->variation * ty_element_bell(&rng) + wet->drying * (0.35f - exposed);
         moisture[i] = ty_clamp(m, -1.0f, 1.0f);
-        tint[i] = ty_clamp(0.5f * ty_grain_bell(&rng), -1.0f, 1.0f);
+        tint[i] = ty_clamp(0.5f * ty_element_bell(&rng), -1.0f, 1.0f);
     }
     for (uint32_t i = count; i < out->instance_count; i++) // further bodies of the same elements
     {
@@ -319,8 +320,9 @@ static ty_status result_write(kit* k, const ty_pile_metrics* metrics, ty_aggrega
     uint32_t count = (uint32_t)ty_pile_count(k->pile);
     const ty_body* bodies = ty_pile_bodies(k->pile);
     const ty_aggregate_recipe* r = k->recipe;
-    ty_aggregate* a = r->element.kind == TY_GRAIN_ROE ? ty_roe_write(&r->element, r->seed, &k->grains[0], bodies, count)
-                                                      : grains_write(k, bodies, count);
+    ty_aggregate* a = r->element.kind == TY_ELEMENT_ROE
+                          ? ty_roe_write(&r->element, r->seed, &k->grains[0], bodies, count)
+                          : grains_write(k, bodies, count);
     if (!a)
         return ty_error_set(error, TY_NO_MEMORY, "no memory for %u grains", count);
     attributes_write(k, a);
@@ -373,7 +375,7 @@ ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate**
 {
     *out = NULL;
     ty_aggregate_recipe recipe = *(const ty_aggregate_recipe*)def;
-    ty_status status = recipe.element.kind == TY_GRAIN_ROE ? ty_roe_complete(&recipe.element, error) : TY_OK;
+    ty_status status = recipe.element.kind == TY_ELEMENT_ROE ? ty_roe_complete(&recipe.element, error) : TY_OK;
     if (status == TY_OK)
         status = recipe_check(&recipe, error);
     if (status != TY_OK)
@@ -386,7 +388,7 @@ ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate**
     ty_pile_destroy(k->pile);
     ty_container_destroy(k->container);
     for (int i = 0; i < k->grain_count; i++)
-        ty_grain_term(&k->grains[i]);
+        ty_element_term(&k->grains[i]);
     ty_free(k);
     return status;
 }

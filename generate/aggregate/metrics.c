@@ -10,7 +10,7 @@ void pile_speeds(const ty_pile* pile, float* rms, float* largest)
     double sum = 0.0;
     float most = 0.0f;
     for (int i = 0; i < pile->count; i++)
-        for (int k = 0; k < TY_GRAIN_BALLS; k++)
+        for (int k = 0; k < pile_ball_count(pile, i); k++)
         {
             const motion* m = &pile->motions[i];
             ty_vec3 arm = ty_sub(pile_balls(pile, i)[k].center, pile->bodies[i].position);
@@ -18,7 +18,7 @@ void pile_speeds(const ty_pile* pile, float* rms, float* largest)
             sum += (double)square;
             most = ty_max(most, square);
         }
-    *rms = pile->count > 0 ? (float)sqrt(sum / ((double)pile->count * TY_GRAIN_BALLS)) : 0.0f;
+    *rms = pile->count > 0 ? (float)sqrt(sum / (double)pile->ball_first[pile->count]) : 0.0f;
     *largest = sqrtf(most);
 }
 
@@ -136,7 +136,7 @@ static void heights_mark(heights* h, const ty_ball* ball)
 static heights heights_create(const ty_pile* pile)
 {
     ty_bounds b = ty_bounds_empty();
-    for (int i = 0; i < pile->count * TY_GRAIN_BALLS; i++)
+    for (int i = 0; i < pile->ball_first[pile->count]; i++)
         b = ty_bounds_add(b, pile->balls[i].center);
     heights h = {.low = b.low, .cell = 0.5f * pile->mean_width};
     h.cell = ty_max(h.cell, ty_max(b.high.x - b.low.x, b.high.z - b.low.z) / 2048.0f);
@@ -145,7 +145,7 @@ static heights heights_create(const ty_pile* pile)
     h.y = TY_ALLOC(float, h.size[0] * h.size[1]);
     for (int i = 0; i < h.size[0] * h.size[1]; i++)
         h.y[i] = b.low.y;
-    for (int i = 0; i < pile->count * TY_GRAIN_BALLS; i++)
+    for (int i = 0; i < pile->ball_first[pile->count]; i++)
         heights_mark(&h, &pile->balls[i]);
     return h;
 }
@@ -158,7 +158,7 @@ void ty_pile_depth(const ty_pile* pile, float* depth)
     for (int i = 0; i < pile->count; i++)
     {
         depth[i] = TY_FLOAT_MAX;
-        for (int k = 0; k < TY_GRAIN_BALLS; k++)
+        for (int k = 0; k < pile_ball_count(pile, i); k++)
         {
             const ty_ball* b = &pile_balls(pile, i)[k];
             float below = h.y[heights_index(&h, b->center.x, b->center.z)] - b->center.y - b->radius;
@@ -174,7 +174,7 @@ static bool inside_any(const ty_pile* pile, ty_vec3 p)
     {
         if (ty_length_sqr(ty_sub(p, pile->bodies[i].position)) > ty_sqr(pile->max_radius))
             continue;
-        for (int k = 0; k < TY_GRAIN_BALLS; k++)
+        for (int k = 0; k < pile_ball_count(pile, i); k++)
         {
             const ty_ball* b = &pile_balls(pile, i)[k];
             if (ty_length_sqr(ty_sub(p, b->center)) < ty_sqr(b->radius))

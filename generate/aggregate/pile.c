@@ -27,7 +27,7 @@ void ty_pile_destroy(ty_pile* pile)
 {
     if (!pile)
         return;
-    void* arrays[] = {pile->bodies,  pile->poses,     pile->motions,     pile->balls,    pile->pairs,
+    void* arrays[] = {pile->bodies,  pile->poses,     pile->motions,     pile->balls,    pile->ball_first, pile->pairs,
                       pile->touches, pile->old_pairs, pile->old_touches, pile->contacts, pile->order};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         ty_free(arrays[i]);
@@ -61,14 +61,26 @@ static void bodies_reserve(ty_pile* pile, int needed)
     pile->bodies = ty_grow(pile->bodies, old, grown, sizeof *pile->bodies);
     pile->poses = ty_grow(pile->poses, old, grown, sizeof *pile->poses);
     pile->motions = ty_grow(pile->motions, old, grown, sizeof *pile->motions);
-    pile->balls = ty_grow(pile->balls, old * TY_GRAIN_BALLS, grown * TY_GRAIN_BALLS, sizeof *pile->balls);
+    pile->ball_first = ty_grow(pile->ball_first, old ? old + 1 : 0, grown + 1, sizeof *pile->ball_first);
     pile->capacity = (int)grown;
+}
+
+// Lays out the balls of the bodies from first on; their positions are for pile_refresh.
+static void balls_lay(ty_pile* pile, int first)
+{
+    if (first == 0)
+        pile->ball_first[0] = 0;
+    for (int i = first; i < pile->count; i++)
+    {
+        TY_ASSERT(pile->bodies[i].grain < (uint32_t)pile->def.grain_count);
+        pile->ball_first[i + 1] = pile->ball_first[i] + pile->def.grains[pile->bodies[i].grain].ball_count;
+    }
+    pile_reserve((void**)&pile->balls, &pile->ball_capacity, pile->ball_first[pile->count], sizeof(ty_ball));
 }
 
 static void body_enter(ty_pile* pile, int i)
 {
     const ty_body* body = &pile->bodies[i];
-    TY_ASSERT(body->grain < (uint32_t)pile->def.grain_count);
     pile->poses[i] = (pose){.seen = body->position, .seen_rotation = body->rotation};
     pile->motions[i] = (motion){.v = body->velocity, .w = body->spin};
     pile->max_radius = ty_max(pile->max_radius, pile->def.grains[body->grain].radius * body->scale);
@@ -79,20 +91,24 @@ static void body_enter(ty_pile* pile, int i)
 void ty_pile_add(ty_pile* pile, const ty_body* bodies, int count)
 {
     bodies_reserve(pile, pile->count + count);
-    for (int i = 0; i < count; i++)
-    {
-        pile->bodies[pile->count] = bodies[i];
-        body_enter(pile, pile->count++);
-    }
+    int first = pile->count;
+    if (count == 0)
+        return;
+    memcpy(pile->bodies + first, bodies, (size_t)count * sizeof *bodies);
+    pile->count += count;
+    balls_lay(pile, first);
+    for (int i = first; i < pile->count; i++)
+        body_enter(pile, i);
 }
 
 void ty_pile_set_bodies(ty_pile* pile, const ty_body* bodies)
 {
+    if (pile->count == 0)
+        return;
+    memmove(pile->bodies, bodies, (size_t)pile->count * sizeof *bodies);
+    balls_lay(pile, 0);
     for (int i = 0; i < pile->count; i++)
-    {
-        pile->bodies[i] = bodies[i];
         body_enter(pile, i);
-    }
 }
 
 // Drops the pairs of removed bodies and renames the others; ascending order is kept, so impulses still find their pair.
@@ -126,7 +142,9 @@ void ty_pile_remove(ty_pile* pile, const bool* gone)
         pile->bodies[kept] = pile->bodies[i];
         pile->poses[kept] = pile->poses[i];
         pile->motions[kept] = pile->motions[i];
-        memmove(pile_balls(pile, kept), pile_balls(pile, i), sizeof(ty_ball) * TY_GRAIN_BALLS);
+        int first = pile->ball_first[i], balls = pile_ball_count(pile, i);
+        memmove(pile_balls(pile, kept), pile->balls + first, sizeof(ty_ball) * (size_t)balls);
+        pile->ball_first[kept + 1] = pile->ball_first[kept] + balls;
         kept++;
     }
     pile->count = kept;
@@ -152,7 +170,7 @@ static void inertia_to_world(const float body[6], const ty_affine* r, float fact
 void pile_refresh(ty_pile* pile, int i)
 {
     const ty_body* body = &pile->bodies[i];
-    const ty_grain* grain = &pile->def.grains[body->grain];
+    const ty_element* grain = &pile->def.grains[body->grain];
     ty_affine turned = ty_affine_from_trs(body->position, body->rotation, ty_vec3_make(1.0f, 1.0f, 1.0f));
     float size = body->scale * pile->growth;
     pose* at = &pile->poses[i];
@@ -161,7 +179,7 @@ void pile_refresh(ty_pile* pile, int i)
     at->frame.y = ty_mul(turned.y, size);
     at->frame.z = ty_mul(turned.z, size);
     ty_ball* balls = pile_balls(pile, i);
-    for (int k = 0; k < TY_GRAIN_BALLS; k++)
+    for (int k = 0; k < grain->ball_count; k++)
         balls[k] = (ty_ball){ty_map_point(&at->frame, grain->balls[k].center), grain->balls[k].radius * size};
     motion* m = &pile->motions[i];
     m->inverse_mass = pile->mean_volume / (grain->volume * body->scale * body->scale * body->scale);

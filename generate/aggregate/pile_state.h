@@ -69,7 +69,9 @@ struct ty_pile
     ty_body* bodies;
     pose* poses;
     motion* motions;
-    ty_ball* balls; // [capacity][TY_GRAIN_BALLS], world
+    ty_ball* balls;  // world, body by body
+    int* ball_first; // [count + 1], of each body in balls
+    int ball_capacity;
     int count, capacity;
     pair* pairs; // ascending (a, b); walls after all others
     int pair_count, pair_capacity, wall_first;
@@ -99,7 +101,12 @@ static inline ty_vec3 symmetric_times(const float s[6], ty_vec3 v)
 
 static inline ty_ball* pile_balls(const ty_pile* pile, int body)
 {
-    return pile->balls + (size_t)body * TY_GRAIN_BALLS;
+    return pile->balls + pile->ball_first[body];
+}
+
+static inline int pile_ball_count(const ty_pile* pile, int body)
+{
+    return pile->ball_first[body + 1] - pile->ball_first[body];
 }
 
 // pile.c

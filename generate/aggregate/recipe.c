@@ -6,7 +6,7 @@ ty_aggregate_recipe ty_aggregate_recipe_default(void)
 {
     ty_pile_def pile = ty_pile_def_default();
     return (ty_aggregate_recipe){
-        .element = ty_grain_def_default(),
+        .element = ty_element_def_default(),
         .container = ty_container_def_default(),
         .fill = {.count = 2000,
                  .density = 0.60f,
@@ -33,7 +33,7 @@ static const char* const roe_presets[] = {"ikura", "tobiko", "tarako", "kazunoko
 
 static void roe_set_default(void* def)
 {
-    *(ty_roe_def*)def = ty_grain_def_default().roe;
+    *(ty_roe_def*)def = ty_element_def_default().roe;
 }
 
 #define OWNER ty_roe_def
@@ -61,10 +61,10 @@ static const ty_param_table roe_table = {
 
 static void grain_set_default(void* def)
 {
-    *(ty_grain_def*)def = ty_grain_def_default();
+    *(ty_element_def*)def = ty_element_def_default();
 }
 
-#define OWNER ty_grain_def
+#define OWNER ty_element_def
 static const ty_param grain_rows[] = {
     {"kind", TY_PARAM_ENUM, "", 0, 0, grain_kinds, NULL, offsetof(OWNER, kind),
      "what one element is; all below but the variation is of rice", false},
@@ -72,18 +72,21 @@ static const ty_param grain_rows[] = {
     FIELD("width", TY_PARAM_FLOAT, "mm", 0.1, 100, width, "mean width, at most the length"),
     FIELD("thickness", TY_PARAM_FLOAT, "mm", 0.05, 100, thickness, "mean thickness, from half the width to the width"),
     FIELD("variation", TY_PARAM_FLOAT, "", 0, 0.2, variation, "standard deviation of the sizes, relative"),
-    FIELD("variants", TY_PARAM_INT, "", 1, TY_GRAIN_MAX_VARIANTS, variants, "how many different meshes are made"),
+    FIELD("variants", TY_PARAM_INT, "", 1, TY_ELEMENT_MAX_VARIANTS, variants, "how many different meshes are made"),
     FIELD("notch", TY_PARAM_FLOAT, "", 0, 0.3, notch, "depth of the germ's dent, of the width"),
     FIELD("divisions", TY_PARAM_INT, "", 4, 64, divisions, "cells across the width of a mesh"),
     {"roe", TY_PARAM_GROUP, "", 0, 0, NULL, &roe_table, offsetof(OWNER, roe), "with kind roe: the egg", false},
 };
 #undef OWNER
 
-static const ty_param_table grain_table = {"aggregate.element",  "The grain that an aggregate is made of.",
-                                           sizeof(ty_grain_def), grain_set_default,
-                                           grain_rows,           TY_PARAM_COUNT(grain_rows)};
+static const ty_param_table grain_table = {"aggregate.element",
+                                           "The grain that an aggregate is made of.",
+                                           sizeof(ty_element_def),
+                                           grain_set_default,
+                                           grain_rows,
+                                           TY_PARAM_COUNT(grain_rows)};
 
-const ty_param_table* ty_grain_params(void)
+const ty_param_table* ty_element_params(void)
 {
     return &grain_table;
 }

@@ -11,7 +11,7 @@ static const ty_roe_def presets[] = {
     [TY_ROE_KAZUNOKO] = {.diameter = 1.4e-3f, .membrane = 30e-6f, .yolk = 0.1f},
 };
 
-ty_status ty_roe_complete(ty_grain_def* def, ty_error* error)
+ty_status ty_roe_complete(ty_element_def* def, ty_error* error)
 {
     ty_roe_def* roe = &def->roe;
     const ty_roe_def* preset = &presets[roe->preset];
@@ -36,7 +36,7 @@ ty_status ty_roe_complete(ty_grain_def* def, ty_error* error)
     return TY_OK;
 }
 
-ty_status ty_roe_init(const ty_grain_def* def, ty_grain* out, ty_error* error)
+ty_status ty_roe_init(const ty_element_def* def, ty_element* out, ty_error* error)
 {
     memset(out, 0, sizeof *out);
     ty_shape_def shape = ty_shape_def_default();
@@ -54,8 +54,7 @@ ty_status ty_roe_init(const ty_grain_def* def, ty_grain* out, ty_error* error)
     for (int i = 0; i < 3; i++)
         out->inverse_inertia[i] = 2.5f / (r * r); // a solid ball's
     out->ball_count = 1;
-    for (int i = 0; i < TY_GRAIN_BALLS; i++)
-        out->balls[i].radius = r;
+    out->balls[0].radius = r;
     return TY_OK;
 }
 
@@ -68,14 +67,14 @@ static ty_mesh* body_mesh(const ty_mesh* membrane, const char* slot)
 }
 
 // From an upright egg to where it lies: turned about the vertical, leaning, a little lower than it is wide.
-static ty_affine egg_frame(const ty_grain_def* def, const ty_body* body, ty_rng* rng)
+static ty_affine egg_frame(const ty_element_def* def, const ty_body* body, ty_rng* rng)
 {
     float turn = ty_rng_range(rng, 0.0f, 2.0f * TY_PI), sine, cosine;
     ty_sincos(ty_rng_range(rng, 0.0f, 2.0f * TY_PI), &sine, &cosine);
     float lean = def->roe.lean * sqrtf(ty_rng_float(rng)); // about even over the cap
     ty_quat upright = ty_quat_axis_angle(ty_vec3_make(0.0f, 1.0f, 0.0f), turn);
     ty_quat leaning = ty_quat_axis_angle(ty_vec3_make(cosine, 0.0f, sine), lean);
-    float flat = ty_clamp(0.2f * def->variation * ty_grain_bell(rng), -0.03f, 0.03f);
+    float flat = ty_clamp(0.2f * def->variation * ty_element_bell(rng), -0.03f, 0.03f);
     float size = body->scale * (1.0f + def->roe.press);
     ty_vec3 scale = {size * (1.0f + 0.5f * flat), size * (1.0f - flat), size * (1.0f + 0.5f * flat)};
     return ty_affine_from_trs(body->position, ty_quat_multiply(leaning, upright), scale);
@@ -93,7 +92,7 @@ static ty_affine shrunk(const ty_affine* frame, float share, float lift)
 
 // The membrane has one thickness whatever the size of the egg. The yolk is the lipid's ball (radius r_i L^(1/3)) and
 // floats against the membrane but for a hair, so that the two meshes do not cut one another.
-static void egg_write(const ty_grain_def* def, const ty_body* body, uint32_t egg, ty_rng* rng, ty_aggregate* out)
+static void egg_write(const ty_element_def* def, const ty_body* body, uint32_t egg, ty_rng* rng, ty_aggregate* out)
 {
     const float hair = 0.006f;
     uint32_t count = out->instance_count / TY_ROE_BODIES;
@@ -105,7 +104,8 @@ static void egg_write(const ty_grain_def* def, const ty_body* body, uint32_t egg
     out->transforms[egg + 2 * count] = shrunk(&frame, white * yolk, white * (1.0f - yolk - hair) * r);
 }
 
-ty_aggregate* ty_roe_write(const ty_grain_def* def, ty_seed seed, ty_grain* egg, const ty_body* bodies, uint32_t count)
+ty_aggregate* ty_roe_write(const ty_element_def* def, ty_seed seed, ty_element* egg, const ty_body* bodies,
+                           uint32_t count)
 {
     ty_aggregate* a = ty_aggregate_create(TY_ROE_BODIES * count, TY_ROE_BODIES);
     if (!a)

@@ -347,10 +347,10 @@ static void test_lost(void** state)
     ty_container_def def = ty_container_def_default();
     ty_container* bowl;
     ty_error error;
-    ty_grain grain;
-    ty_grain_def rice = ty_grain_def_default();
+    ty_element grain;
+    ty_element_def rice = ty_element_def_default();
     assert_int_equal(ty_container_create(&def, NULL, &bowl, &error), TY_OK);
-    assert_int_equal(ty_grain_init(&rice, (ty_seed){1}, 0, &grain, &error), TY_OK);
+    assert_int_equal(ty_rice_init(&rice, (ty_seed){1}, 0, &grain, &error), TY_OK);
     ty_pile_def pile_def = ty_pile_def_default();
     pile_def.grains = &grain;
     pile_def.grain_count = 1;
@@ -367,7 +367,7 @@ static void test_lost(void** state)
     assert_int_equal(lost, 0);
     assert_true(ty_container_holds(bowl, ty_pile_bodies(pile)[0].position));
     ty_pile_destroy(pile);
-    ty_grain_term(&grain);
+    ty_element_term(&grain);
     ty_container_destroy(bowl);
 }
 

@@ -3,25 +3,25 @@
 // own.
 #include "base/cmocka_all.h"
 #include <string.h>
-#include <tsuya/generate/grain.h>
+#include <tsuya/generate/element.h>
 
 static const ty_seed seed = {11};
 
-static ty_grain grain_make(const ty_grain_def* def, int variant)
+static ty_element grain_make(const ty_element_def* def, int variant)
 {
-    ty_grain grain;
+    ty_element grain;
     ty_error error;
-    assert_int_equal(ty_grain_init(def, seed, variant, &grain, &error), TY_OK);
+    assert_int_equal(ty_rice_init(def, seed, variant, &grain, &error), TY_OK);
     return grain;
 }
 
 static void test_closed_and_outward(void** state)
 {
     (void)state;
-    ty_grain_def def = ty_grain_def_default();
+    ty_element_def def = ty_element_def_default();
     for (int v = 0; v < 4; v++)
     {
-        ty_grain grain = grain_make(&def, v);
+        ty_element grain = grain_make(&def, v);
         ty_mesh_topology topology;
         ty_mesh_analyse(grain.mesh, &topology);
         assert_true(topology.closed);
@@ -29,7 +29,7 @@ static void test_closed_and_outward(void** state)
         assert_int_equal(topology.welded_vertices + grain.mesh->triangle_count, topology.edges + 2); // a sphere
         assert_in_range(grain.mesh->triangle_count, 1500, 2500);
         assert_true(fabs(topology.volume / (double)grain.volume - 1.0) < 1e-4);
-        ty_grain_term(&grain);
+        ty_element_term(&grain);
     }
 }
 
@@ -37,16 +37,16 @@ static void test_closed_and_outward(void** state)
 static void test_volume(void** state)
 {
     (void)state;
-    ty_grain_def def = ty_grain_def_default();
+    ty_element_def def = ty_element_def_default();
     def.variation = 0.0f;
     def.notch = 0.0f;
     double expected = 1.5 * 3.14159265358979 * (double)def.length * (double)def.width * (double)def.thickness / 8.0;
     double mean = 0.0;
     for (int v = 0; v < 8; v++)
     {
-        ty_grain grain = grain_make(&def, v);
+        ty_element grain = grain_make(&def, v);
         mean += (double)grain.volume / 8.0;
-        ty_grain_term(&grain);
+        ty_element_term(&grain);
     }
     assert_true(fabs(mean / expected - 1.0) < 0.03);
 }
@@ -63,10 +63,10 @@ static double corner_angle(const ty_mesh* mesh, uint32_t triangle, int corner)
 static void test_no_slivers_and_smooth(void** state)
 {
     (void)state;
-    ty_grain_def def = ty_grain_def_default();
+    ty_element_def def = ty_element_def_default();
     for (int v = 0; v < 4; v++)
     {
-        ty_grain grain = grain_make(&def, v);
+        ty_element grain = grain_make(&def, v);
         const ty_mesh* mesh = grain.mesh;
         double least = 180.0;
         for (uint32_t t = 0; t < mesh->triangle_count; t++)
@@ -80,15 +80,15 @@ static void test_no_slivers_and_smooth(void** state)
         }
         assert_non_null(mesh->curvature_1);
         assert_non_null(mesh->welds);
-        ty_grain_term(&grain);
+        ty_element_term(&grain);
     }
 }
 
 // Distance of p from the union of the balls; negative inside.
-static float union_distance(const ty_grain* grain, ty_vec3 p)
+static float union_distance(const ty_element* grain, ty_vec3 p)
 {
     float least = TY_FLOAT_MAX;
-    for (int i = 0; i < TY_GRAIN_BALLS; i++)
+    for (int i = 0; i < grain->ball_count; i++)
         least = ty_min(least, ty_length(ty_sub(p, grain->balls[i].center)) - grain->balls[i].radius);
     return least;
 }
@@ -96,11 +96,11 @@ static float union_distance(const ty_grain* grain, ty_vec3 p)
 static void test_balls_meet_the_surface(void** state)
 {
     (void)state;
-    ty_grain_def def = ty_grain_def_default();
+    ty_element_def def = ty_element_def_default();
     def.notch = 0.0f;
     for (int v = 0; v < 8; v++)
     {
-        ty_grain grain = grain_make(&def, v);
+        ty_element grain = grain_make(&def, v);
         double square = 0.0, mean = 0.0, worst = 0.0;
         for (uint32_t i = 0; i < grain.mesh->vertex_count; i++)
         {
@@ -113,7 +113,7 @@ static void test_balls_meet_the_surface(void** state)
         assert_true(fabs(mean) < 0.01);
         assert_true(worst < 0.08);
         assert_true(fabs(sqrt(square) - (double)(grain.fit_rms / grain.width)) < 1e-3);
-        ty_grain_term(&grain);
+        ty_element_term(&grain);
     }
 }
 
@@ -121,10 +121,10 @@ static void test_balls_meet_the_surface(void** state)
 static void test_notch(void** state)
 {
     (void)state;
-    ty_grain_def def = ty_grain_def_default();
-    ty_grain dented = grain_make(&def, 0);
+    ty_element_def def = ty_element_def_default();
+    ty_element dented = grain_make(&def, 0);
     def.notch = 0.0f;
-    ty_grain whole = grain_make(&def, 0);
+    ty_element whole = grain_make(&def, 0);
     assert_true(dented.volume < 0.998f * whole.volume);
     assert_true(dented.volume > 0.97f * whole.volume);
     float deepest = 0.0f;
@@ -140,17 +140,17 @@ static void test_notch(void** state)
     }
     assert_true(deepest > 0.06f * whole.width && deepest < 0.16f * whole.width);
     assert_true(at.x > 0.25f * def.length && at.y > 0.0f);
-    ty_grain_term(&dented);
-    ty_grain_term(&whole);
+    ty_element_term(&dented);
+    ty_element_term(&whole);
 }
 
 // Inverse inertia against the ellipsoid of the same sizes: (b^2 + c^2) / 5 and so on, larger as the ends are fuller.
 static void test_inertia(void** state)
 {
     (void)state;
-    ty_grain_def def = ty_grain_def_default();
+    ty_element_def def = ty_element_def_default();
     def.variation = 0.0f;
-    ty_grain grain = grain_make(&def, 0);
+    ty_element grain = grain_make(&def, 0);
     double a = (double)def.length / 2, b = (double)def.width / 2, c = (double)def.thickness / 2;
     double ellipsoid[3] = {(b * b + c * c) / 5, (a * a + c * c) / 5, (a * a + b * b) / 5};
     for (int i = 0; i < 3; i++)
@@ -158,14 +158,14 @@ static void test_inertia(void** state)
         double ratio = 1.0 / ((double)grain.inverse_inertia[i] * ellipsoid[i]);
         assert_true(ratio > 0.98 && ratio < 1.2);
     }
-    ty_grain_term(&grain);
+    ty_element_term(&grain);
 }
 
 static void test_variants_differ_and_repeat(void** state)
 {
     (void)state;
-    ty_grain_def def = ty_grain_def_default();
-    ty_grain a = grain_make(&def, 0), again = grain_make(&def, 0), b = grain_make(&def, 1);
+    ty_element_def def = ty_element_def_default();
+    ty_element a = grain_make(&def, 0), again = grain_make(&def, 0), b = grain_make(&def, 1);
     size_t size = a.mesh->vertex_count * sizeof(ty_vec3);
     assert_memory_equal(a.mesh->positions, again.mesh->positions, size);
     assert_memory_equal(a.balls, again.balls, sizeof a.balls);
@@ -173,29 +173,29 @@ static void test_variants_differ_and_repeat(void** state)
     double sum = 0.0, square = 0.0;
     for (int v = 0; v < 64; v++)
     {
-        ty_grain g = grain_make(&def, v);
+        ty_element g = grain_make(&def, v);
         double w = (double)(g.width / def.width) - 1.0;
         sum += w / 64;
         square += w * w / 64;
-        ty_grain_term(&g);
+        ty_element_term(&g);
     }
     double deviation = sqrt(square - sum * sum);
     assert_true(deviation > 0.03 && deviation < 0.07); // .8 of the recipe's .06
-    ty_grain_term(&a);
-    ty_grain_term(&again);
-    ty_grain_term(&b);
+    ty_element_term(&a);
+    ty_element_term(&again);
+    ty_element_term(&b);
 }
 
 static void test_no_memory(void** state)
 {
     (void)state;
-    ty_grain_def def = ty_grain_def_default();
+    ty_element_def def = ty_element_def_default();
     for (long n = 0; n < 2; n++)
     {
-        ty_grain grain;
+        ty_element grain;
         ty_error error;
         ty_memory_fail_after(n);
-        assert_int_equal(ty_grain_init(&def, seed, 0, &grain, &error), TY_NO_MEMORY);
+        assert_int_equal(ty_rice_init(&def, seed, 0, &grain, &error), TY_NO_MEMORY);
         ty_memory_fail_after(-1);
         assert_null(grain.mesh);
     }

@@ -10,17 +10,17 @@ enum
     VARIANTS = 4,
 };
 
-static ty_grain grains[VARIANTS];
+static ty_element grains[VARIANTS];
 static float mean_volume;
 
 static int group_setup(void** state)
 {
     (void)state;
-    ty_grain_def def = ty_grain_def_default();
+    ty_element_def def = ty_element_def_default();
     ty_error error;
     for (int i = 0; i < VARIANTS; i++)
     {
-        assert_int_equal(ty_grain_init(&def, (ty_seed){5}, i, &grains[i], &error), TY_OK);
+        assert_int_equal(ty_rice_init(&def, (ty_seed){5}, i, &grains[i], &error), TY_OK);
         mean_volume += grains[i].volume / VARIANTS;
     }
     return 0;
@@ -30,7 +30,7 @@ static int group_teardown(void** state)
 {
     (void)state;
     for (int i = 0; i < VARIANTS; i++)
-        ty_grain_term(&grains[i]);
+        ty_element_term(&grains[i]);
     return 0;
 }
 
@@ -85,7 +85,7 @@ static void test_free_fall(void** state)
 // Of the body's own rotation, for density 1.
 static ty_vec3 spin_momentum(const ty_body* body)
 {
-    const ty_grain* grain = &grains[body->grain];
+    const ty_element* grain = &grains[body->grain];
     const float* s = grain->inverse_inertia;
     const ty_vec3 x = {s[0], s[3], s[4]}, y = {s[3], s[1], s[5]}, z = {s[4], s[5], s[2]};
     ty_quat q = body->rotation, back = {-q.x, -q.y, -q.z, q.w};

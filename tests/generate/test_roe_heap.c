@@ -15,7 +15,7 @@ enum
 static ty_aggregate_recipe spoonful(void)
 {
     ty_aggregate_recipe r = ty_aggregate_recipe_default();
-    r.element.kind = TY_GRAIN_ROE;
+    r.element.kind = TY_ELEMENT_ROE;
     r.container.shape.radius = 0.0205f;
     r.container.shape.height = 0.0125f;
     r.container.shape.thickness = 0.0016f;

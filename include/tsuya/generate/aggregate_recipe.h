@@ -33,7 +33,7 @@ typedef struct ty_wetness_def
 
 typedef struct ty_aggregate_recipe
 {
-    ty_grain_def element;
+    ty_element_def element;
     ty_container_def container;
     ty_fill_def fill;
     ty_settle_def settle;

@@ -2,15 +2,15 @@
 // Rigid grains of balls under gravity: fill a space, settle with friction until at rest, polish overlaps away.
 #pragma once
 #include <tsuya/generate/container.h>
-#include <tsuya/generate/grain.h>
+#include <tsuya/generate/element.h>
 
 typedef struct ty_pile_def
 {
-    ty_vec3 gravity;        // m/s^2
-    float friction;         // Coulomb coefficient, grains and walls alike, >= 0
-    float rolling;          // rolling resistance, of half the mean width, >= 0
-    float rate;             // substeps per second, 500..20000
-    const ty_grain* grains; // borrowed, must outlive the pile
+    ty_vec3 gravity;          // m/s^2
+    float friction;           // Coulomb coefficient, grains and walls alike, >= 0
+    float rolling;            // rolling resistance, of half the mean width, >= 0
+    float rate;               // substeps per second, 500..20000
+    const ty_element* grains; // borrowed, must outlive the pile
     int grain_count;
     const ty_container* container; // borrowed; NULL = no walls
 } ty_pile_def;
