@@ -111,26 +111,30 @@ static inline u32x4 group_point(const ty_sampler* s, uint32_t group, uint32_t* s
 
 #define DIMENSION_STEP 0x9e3779b9u // between the seeds of a group's dimensions
 
-// Side by side: mix32, the scrambling, reversed bits within bytes, reversed bytes.
+// Vectors of any width: mix32 of the seeds, the scrambling, reversed bits within bytes.
+#define SCRAMBLE(x, seed)                                                                                              \
+    do                                                                                                                 \
+    {                                                                                                                  \
+        seed ^= seed >> 16;                                                                                            \
+        seed *= 0x7feb352du;                                                                                           \
+        seed ^= seed >> 15;                                                                                            \
+        seed *= 0x846ca68bu;                                                                                           \
+        seed ^= seed >> 16;                                                                                            \
+        x ^= x * 0x3d20adeau;                                                                                          \
+        x += seed;                                                                                                     \
+        x *= seed >> 16 | 1u;                                                                                          \
+        x ^= x * 0x05526c56u;                                                                                          \
+        x ^= x * 0x53a22864u;                                                                                          \
+        x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;                                                           \
+        x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;                                                           \
+        x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;                                                           \
+    } while (0)
+
 void ty_sampler_4d(const ty_sampler* sampler, uint32_t group, float u[4])
 {
     uint32_t s;
     u32x4 x = group_point(sampler, group, &s), seed = (u32x4){s, s, s, s} + (u32x4){0, 1, 2, 3} * DIMENSION_STEP;
-    seed ^= seed >> 16;
-    seed *= 0x7feb352du;
-    seed ^= seed >> 15;
-    seed *= 0x846ca68bu;
-    seed ^= seed >> 16;
-
-    x ^= x * 0x3d20adeau;
-    x += seed;
-    x *= seed >> 16 | 1u;
-    x ^= x * 0x05526c56u;
-    x ^= x * 0x53a22864u;
-
-    x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
-    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
-    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+    SCRAMBLE(x, seed);
     x = (u32x4)__builtin_shufflevector((u8x16)x, (u8x16)x, 3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12);
     f32x4 unit = __builtin_convertvector((s32x4)(x >> 8), f32x4) * 0x1p-24f;
     memcpy(u, &unit, sizeof unit);
@@ -143,21 +147,7 @@ void ty_sampler_8d(const ty_sampler* sampler, uint32_t group, float u[8])
     u32x4 low = group_point(sampler, group, &a), high = group_point(sampler, group + 1u, &b);
     u32x8 x = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
     u32x8 seed = (u32x8){a, a, a, a, b, b, b, b} + (u32x8){0, 1, 2, 3, 0, 1, 2, 3} * DIMENSION_STEP;
-    seed ^= seed >> 16;
-    seed *= 0x7feb352du;
-    seed ^= seed >> 15;
-    seed *= 0x846ca68bu;
-    seed ^= seed >> 16;
-
-    x ^= x * 0x3d20adeau;
-    x += seed;
-    x *= seed >> 16 | 1u;
-    x ^= x * 0x05526c56u;
-    x ^= x * 0x53a22864u;
-
-    x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
-    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
-    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+    SCRAMBLE(x, seed);
     x = (u32x8)__builtin_shufflevector((u8x32)x, (u8x32)x, 3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12, 19, 18,
                                        17, 16, 23, 22, 21, 20, 27, 26, 25, 24, 31, 30, 29, 28);
     f32x8 unit = __builtin_convertvector((s32x8)(x >> 8), f32x8) * 0x1p-24f;

@@ -37,6 +37,18 @@ static float internal_reflectance(float ior, float weight)
     return weight * (1.0f - (1.0f - outside) / (ior * ior));
 }
 
+// Returns whether all channels are alike.
+static bool set_channels(float path, ty_rgb scale, ty_rgb color, float internal, float l[3], float loss[3])
+{
+    const float scales[3] = {scale.r, scale.g, scale.b}, colors[3] = {color.r, color.g, color.b};
+    for (int i = 0; i < 3; i++)
+    {
+        l[i] = ty_max(path * scales[i], 0.0f);
+        loss[i] = ty_cdrf_loss(colors[i], internal);
+    }
+    return l[0] == l[1] && l[1] == l[2] && loss[0] == loss[1] && loss[1] == loss[2];
+}
+
 static void prepare_medium(const ty_material* material, const ty_shading_context* context, const ty_surface_point* p,
                            const ty_moisture_optics* optics, ty_cdrf_optics* out)
 {
@@ -50,15 +62,8 @@ static void prepare_medium(const ty_material* material, const ty_shading_context
         // Left to the moisture, the published form keeps the published law, linear in curvature.
         out->sigma_slope = d->kernel == TY_CDRF_GAUSSIAN_PUBLISHED ? optics->gaussian_sigma : 0.0f;
     }
-    const float scales[3] = {scale.r, scale.g, scale.b}, colors[3] = {out->color.r, out->color.g, out->color.b};
     float internal = internal_reflectance(d->specular_ior, out->coat_weight);
-    for (int i = 0; i < 3; i++)
-    {
-        out->mean_free_path[i] = ty_max(path * scales[i], 0.0f);
-        out->loss[i] = ty_cdrf_loss(colors[i], internal);
-    }
-    const float *l = out->mean_free_path, *a = out->loss;
-    out->grey = l[0] == l[1] && l[1] == l[2] && a[0] == a[1] && a[1] == a[2];
+    out->grey = set_channels(path, scale, out->color, internal, out->mean_free_path, out->loss);
 }
 
 static ty_cdrf_optics make_optics(const ty_material* material, const ty_shading_context* context,
@@ -122,14 +127,7 @@ void ty_cdrf_prepare(const ty_material* material, const ty_shading_context* cont
 
 void ty_cdrf_set_medium(ty_bsdf* b, float mean_free_path, ty_rgb scale, ty_rgb color, float internal)
 {
-    const float scales[3] = {scale.r, scale.g, scale.b}, colors[3] = {color.r, color.g, color.b};
-    float *l = b->mean_free_path, *a = b->loss;
-    for (int i = 0; i < 3; i++)
-    {
-        l[i] = ty_max(mean_free_path * scales[i], 0.0f);
-        a[i] = ty_cdrf_loss(colors[i], internal);
-    }
-    b->grey = l[0] == l[1] && l[1] == l[2] && a[0] == a[1] && a[1] == a[2];
+    b->grey = set_channels(mean_free_path, scale, color, internal, b->mean_free_path, b->loss);
     b->sigma_slope = 0.0f;
 }
 

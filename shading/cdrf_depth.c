@@ -5,6 +5,7 @@
 #include "depth_field.h"
 #include "lobes.h"
 #include "material_private.h"
+#include "prototype_point.h"
 #include "spheroid_exit.h"
 #include <tsuya/shading/cdrf.h>
 #include <tsuya/shading/sampling.h>
@@ -40,20 +41,6 @@ typedef enum crossing
     CROSSING_EXIT,
     CROSSING_ENTRY, // a front face: the ray began outside
 } crossing;
-
-static ty_vec3 triangle_normal(const ty_mesh* mesh, uint32_t triangle)
-{
-    const uint32_t* v = mesh->triangles[triangle];
-    const ty_vec3* q = mesh->positions;
-    return ty_cross(ty_sub(q[v[1]], q[v[0]]), ty_sub(q[v[2]], q[v[0]]));
-}
-
-static ty_vec3 position_local(const ty_mesh* mesh, const ty_surface_point* x)
-{
-    const uint32_t* v = mesh->triangles[x->triangle];
-    ty_vec3 p = ty_mul(mesh->positions[v[0]], 1.0f - x->u - x->v);
-    return ty_mad(ty_mad(p, mesh->positions[v[1]], x->u), mesh->positions[v[2]], x->v);
-}
 
 static float interpolate(const ty_mesh* mesh, const ty_surface_point* x, const float* field)
 {
@@ -99,7 +86,7 @@ static void interior_begin(const ty_bsdf* b, const ty_world* world, const ty_dep
     in->world = world;
     in->prototype = prototype;
     in->mesh = ty_world_prototype_mesh(world, prototype);
-    in->x = position_local(in->mesh, x);
+    in->x = ty_prototype_point(in->mesh, x);
     in->thickness = interpolate(in->mesh, x, field->depth);
     in->curvature = interpolate(in->mesh, x, field->curvature);
     int which = b->material->cdrf.curvature;
@@ -308,7 +295,7 @@ bool ty_cdrf_depth_exit(const ty_shading_context* context, ty_bsdf* b, const flo
             c = walk_on(&in, start, way, extra, &hit);
         else if (c == CROSSING_EXIT && coloured)
         {
-            ty_vec3 n = triangle_normal(in.mesh, hit.triangle), v = ty_mul(w, hit.t);
+            ty_vec3 n = ty_prototype_normal(in.mesh, hit.triangle), v = ty_mul(w, hit.t);
             v.z -= depth;
             n = ty_vec3_make(ty_dot(n, in.frame.t), ty_dot(n, in.frame.b), ty_dot(n, in.frame.n));
             factor = channel_weights(&in, v, n, chosen, odds, x->convex);

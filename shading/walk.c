@@ -2,6 +2,7 @@
 // Random walks within one closed instance, traced in its prototype's space; distances are those of the world under any
 // map, because directions are carried over with their length.
 #include "guide.h"
+#include "prototype_point.h"
 
 typedef struct body
 {
@@ -19,25 +20,16 @@ static body body_make(const ty_world* world, uint32_t object, uint32_t instance,
                   ty_world_to_local(world, object, instance, time), 1};
 }
 
-static ty_vec3 triangle_normal(const ty_mesh* mesh, uint32_t triangle)
-{
-    const uint32_t* v = mesh->triangles[triangle];
-    const ty_vec3* q = mesh->positions;
-    return ty_cross(ty_sub(q[v[1]], q[v[0]]), ty_sub(q[v[2]], q[v[0]]));
-}
-
 static float rounding(ty_vec3 p)
 {
     return (fabsf(p.x) + fabsf(p.y) + fabsf(p.z)) * 0x1p-20f;
 }
 
-// Just beneath a point of the surface, exact to rounding in the prototype's space however far away the instance is.
+// Just beneath a point of the surface, in the prototype's space.
 static ty_vec3 beneath(const ty_mesh* mesh, const ty_surface_point* x)
 {
-    const uint32_t* v = mesh->triangles[x->triangle];
-    ty_vec3 p = ty_mul(mesh->positions[v[0]], 1.0f - x->u - x->v);
-    p = ty_mad(ty_mad(p, mesh->positions[v[1]], x->u), mesh->positions[v[2]], x->v);
-    return ty_mad(p, ty_normalize(triangle_normal(mesh, x->triangle)), -rounding(p));
+    ty_vec3 p = ty_prototype_point(mesh, x);
+    return ty_mad(p, ty_normalize(ty_prototype_normal(mesh, x->triangle)), -rounding(p));
 }
 
 typedef enum crossing
@@ -55,7 +47,7 @@ static crossing find_end(body* b, ty_vec3 p, ty_vec3 direction, float length, ty
     {
         if (!ty_world_intersect_prototype(b->world, b->prototype, p, direction, length - way, hit, NULL))
             return length < TY_FLOAT_MAX ? CROSSING_NONE : CROSSING_LOST;
-        bool out = ty_dot(triangle_normal(b->mesh, hit->triangle), direction) >= 0.0f;
+        bool out = ty_dot(ty_prototype_normal(b->mesh, hit->triangle), direction) >= 0.0f;
         b->layers += out ? -1 : 1;
         way += hit->t;
         if (b->layers == 0)
