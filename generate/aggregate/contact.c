@@ -1,131 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contact candidates of a pile: found on a grid, listed in id order with the impulses they keep, coloured in that
 // order.
-#include "pile_state.h"
+#include "grid.h"
 #include <string.h>
-
-// --- a grid over the bodies' centres ---
-
-typedef struct grid
-{
-    ty_vec3 low;
-    float cell;
-    int size[3];
-    int* start;  // [cells + 1]
-    int* sorted; // bodies by cell, ascending within one
-    int* cell_of;
-} grid;
-
-static int grid_coordinate(const grid* g, float x, float low, int axis)
-{
-    float f = ty_clamp((x - low) / g->cell, 0.0f, (float)(g->size[axis] - 1));
-    return (int)f;
-}
-
-static grid grid_create(const ty_pile* pile, float cell)
-{
-    grid g = {.cell = cell};
-    ty_bounds b = ty_bounds_empty();
-    for (int i = 0; i < pile->count; i++)
-        b = ty_bounds_add(b, pile->bodies[i].position);
-    g.low = b.low;
-    float extent[3] = {b.high.x - b.low.x, b.high.y - b.low.y, b.high.z - b.low.z};
-    for (int axis = 0; axis < 3; axis++)
-        g.size[axis] = (int)ty_clamp(extent[axis] / cell + 1.0f, 1.0f, 128.0f);
-    int cells = g.size[0] * g.size[1] * g.size[2];
-    g.start = TY_ALLOC(int, cells + 1);
-    g.sorted = TY_ALLOC(int, pile->count);
-    g.cell_of = TY_ALLOC(int, pile->count);
-    for (int i = 0; i < pile->count; i++)
-    {
-        ty_vec3 p = pile->bodies[i].position;
-        int x = grid_coordinate(&g, p.x, g.low.x, 0), y = grid_coordinate(&g, p.y, g.low.y, 1);
-        int z = grid_coordinate(&g, p.z, g.low.z, 2);
-        g.cell_of[i] = (z * g.size[1] + y) * g.size[0] + x;
-        g.start[g.cell_of[i] + 1]++;
-    }
-    for (int c = 0; c < cells; c++)
-        g.start[c + 1] += g.start[c];
-    for (int i = pile->count - 1; i >= 0; i--) // fills each cell from its end, and moves its end to its start
-        g.sorted[--g.start[g.cell_of[i] + 1]] = i;
-    memmove(g.start, g.start + 1, (size_t)cells * sizeof(int));
-    g.start[cells] = pile->count;
-    return g;
-}
-
-static void grid_destroy(grid* g)
-{
-    ty_free(g->start);
-    ty_free(g->sorted);
-    ty_free(g->cell_of);
-}
-
-static float pair_margin(const ty_pile* pile, int a, int b)
-{
-    return 0.5f * (pile->poses[a].reach + pile->poses[b].reach);
-}
-
-// Bodies after i whose bounding spheres come within the margin, ascending. Returns how many; at most limit.
-static int grid_neighbours(const ty_pile* pile, const grid* g, int i, int* out, int limit)
-{
-    int count = 0, c = g->cell_of[i];
-    int x = c % g->size[0], y = c / g->size[0] % g->size[1], z = c / (g->size[0] * g->size[1]);
-    float radius = pile->def.grains[pile->bodies[i].grain].radius * pile->bodies[i].scale;
-    for (int dz = z > 0 ? -1 : 0; dz <= (z < g->size[2] - 1 ? 1 : 0); dz++)
-        for (int dy = y > 0 ? -1 : 0; dy <= (y < g->size[1] - 1 ? 1 : 0); dy++)
-            for (int dx = x > 0 ? -1 : 0; dx <= (x < g->size[0] - 1 ? 1 : 0); dx++)
-            {
-                int cell = c + (dz * g->size[1] + dy) * g->size[0] + dx;
-                for (int k = g->start[cell]; k < g->start[cell + 1]; k++)
-                {
-                    int j = g->sorted[k];
-                    if (j <= i)
-                        continue;
-                    const ty_body* other = &pile->bodies[j];
-                    float reach = pile->def.grains[other->grain].radius * other->scale + radius;
-                    reach = reach * pile->growth + pair_margin(pile, i, j);
-                    if (ty_length_sqr(ty_sub(other->position, pile->bodies[i].position)) > reach * reach ||
-                        count == limit)
-                        continue;
-                    int at = count++;
-                    for (; at > 0 && out[at - 1] > j; at--)
-                        out[at] = out[at - 1];
-                    out[at] = j;
-                }
-            }
-    return count;
-}
 
 // --- candidates ---
 
-static touch* touch_push(ty_pile* pile, int a, int b)
+// What one piece of the bodies finds, in id order; pieces are joined in order, whoever found them.
+typedef struct found
 {
-    pile_reserve((void**)&pile->touches, &pile->touch_capacity, pile->touch_count + 1, sizeof(touch));
-    touch* t = &pile->touches[pile->touch_count++];
-    *t = (touch){.a = (uint8_t)a, .b = (uint8_t)b};
-    return t;
+    pair* pairs;
+    int pair_count, pair_capacity;
+    touch* touches;
+    int touch_count, touch_capacity;
+    int first_pair, first_touch; // of the piece in the whole
+} found;
+
+enum
+{
+    SEARCH_PIECE = 512, // bodies that are searched at a time
+};
+
+static void touch_push(found* f, int a, int b)
+{
+    pile_reserve((void**)&f->touches, &f->touch_capacity, f->touch_count + 1, sizeof(touch));
+    f->touches[f->touch_count++] = (touch){.a = (uint8_t)a, .b = (uint8_t)b};
 }
 
-static void pair_push(ty_pile* pile, int a, int b, int first)
+static void pair_push(found* f, int a, int b, int first)
 {
-    if (pile->touch_count == first)
+    if (f->touch_count == first)
         return;
-    pile_reserve((void**)&pile->pairs, &pile->pair_capacity, pile->pair_count + 1, sizeof(pair));
-    pile->pairs[pile->pair_count++] = (pair){.a = a, .b = b, .first = first, .count = pile->touch_count - first};
+    pile_reserve((void**)&f->pairs, &f->pair_capacity, f->pair_count + 1, sizeof(pair));
+    f->pairs[f->pair_count++] = (pair){.a = a, .b = b, .first = first, .count = f->touch_count - first};
 }
 
 // The impulses of a pair's touches that were candidates before; both lists ascend in (a, b).
-static void impulses_keep(ty_pile* pile, int first, const pair* old)
+static void impulses_keep(const ty_pile* pile, found* f, int first, const pair* old)
 {
     const touch *from = pile->old_touches + old->first, *end = from + old->count;
-    for (int t = first; t < pile->touch_count; t++)
+    for (int t = first; t < f->touch_count; t++)
     {
-        touch* to = &pile->touches[t];
+        touch* to = &f->touches[t];
         while (from < end && (from->a < to->a || (from->a == to->a && from->b < to->b)))
             from++;
         if (from < end && from->a == to->a && from->b == to->b)
             *to = *from;
     }
+}
+
+// The first old pair from begin to end whose first body is at least a.
+static int old_pair_at(const ty_pile* pile, int begin, int end, int a)
+{
+    while (begin < end)
+    {
+        int middle = begin + (end - begin) / 2;
+        if (pile->old_pairs[middle].a < a)
+            begin = middle + 1;
+        else
+            end = middle;
+    }
+    return begin;
 }
 
 // Squared distance of the segments from p along d and from q along e (Ericson 2005, 5.1.9).
@@ -151,7 +86,7 @@ static bool capsules_meet(const ty_pile* pile, int a, int b, float margin)
                                  ty_sub(q[last_q].center, q[0].center)) < reach * reach;
 }
 
-static void touches_find(ty_pile* pile, int a, int b, float margin)
+static void touches_find(const ty_pile* pile, found* f, int a, int b, float margin)
 {
     const ty_ball *p = pile_balls(pile, a), *q = pile_balls(pile, b);
     if (!capsules_meet(pile, a, b, margin))
@@ -166,59 +101,130 @@ static void touches_find(ty_pile* pile, int a, int b, float margin)
             continue;
         for (int k = 0; k < of_b; k++)
             if (ty_length_sqr(ty_sub(p[i].center, q[k].center)) < ty_sqr(p[i].radius + q[k].radius + margin))
-                touch_push(pile, i, k);
+                touch_push(f, i, k);
     }
 }
 
-static void pairs_find(ty_pile* pile)
+typedef struct search
+{
+    ty_pile* pile;
+    body_grid grid;
+    found* pieces;
+} search;
+
+static void pairs_find(void* context, int64_t begin, int64_t end, int worker)
+{
+    (void)worker;
+    const search* s = context;
+    const ty_pile* pile = s->pile;
+    found* f = &s->pieces[begin / SEARCH_PIECE];
+    const pair* o = pile->old_pairs;
+    int old = old_pair_at(pile, 0, pile->old_wall_first, (int)begin);
+    body_list near = {0};
+    for (int i = (int)begin; i < (int)end; i++)
+    {
+        body_grid_after(pile, &s->grid, i, &near);
+        for (int n = 0; n < near.count; n++)
+        {
+            int j = near.at[n], first = f->touch_count;
+            touches_find(pile, f, i, j, 0.5f * (pile->poses[i].reach + pile->poses[j].reach));
+            while (old < pile->old_wall_first && (o[old].a < i || (o[old].a == i && o[old].b < j)))
+                old++;
+            if (old < pile->old_wall_first && o[old].a == i && o[old].b == j)
+                impulses_keep(pile, f, first, &o[old]);
+            pair_push(f, i, j, first);
+        }
+    }
+    ty_free(near.at);
+}
+
+static void body_walls_find(const ty_pile* pile, found* f, int i)
+{
+    int walls = pile->def.container ? ty_container_wall_count(pile->def.container) : 0;
+    const ty_ball* balls = pile_balls(pile, i);
+    float margin = pile->poses[i].reach;
+    const int ball_count = pile_ball_count(pile, i);
+    for (int k = 0; k < ball_count; k++)
+    {
+        ty_vec3 n;
+        for (int w = 0; w < walls; w++)
+            if (pile_wall(pile, w, balls[k].center, &n) < balls[k].radius + margin)
+                touch_push(f, k, w);
+        if (pile->lid && pile_wall(pile, PILE_LID, balls[k].center, &n) < balls[k].radius + margin)
+            touch_push(f, k, PILE_LID);
+    }
+}
+
+static void walls_find(void* context, int64_t begin, int64_t end, int worker)
+{
+    (void)worker;
+    const search* s = context;
+    const ty_pile* pile = s->pile;
+    found* f = &s->pieces[begin / SEARCH_PIECE];
+    int old = old_pair_at(pile, pile->old_wall_first, pile->old_pair_count, (int)begin);
+    for (int i = (int)begin; i < (int)end; i++)
+    {
+        int first = f->touch_count;
+        body_walls_find(pile, f, i);
+        while (old < pile->old_pair_count && pile->old_pairs[old].a < i)
+            old++;
+        if (old < pile->old_pair_count && pile->old_pairs[old].a == i)
+            impulses_keep(pile, f, first, &pile->old_pairs[old]);
+        pair_push(f, i, PILE_WALL, first);
+    }
+}
+
+static void pieces_join(const search* s, int64_t count)
+{
+    for (int64_t k = 0; k < count; k++)
+    {
+        found* f = &s->pieces[k];
+        for (int i = 0; i < f->pair_count; i++)
+        {
+            pair* p = &s->pile->pairs[f->first_pair + i];
+            *p = f->pairs[i];
+            p->first += f->first_touch;
+        }
+        if (f->touch_count > 0)
+            memcpy(s->pile->touches + f->first_touch, f->touches, (size_t)f->touch_count * sizeof(touch));
+        ty_free(f->pairs);
+        ty_free(f->touches);
+        *f = (found){0};
+    }
+}
+
+// Searches all bodies in pieces and puts what they find behind what is there, in the pieces' order.
+static void search_run(search* s, ty_workers* workers, ty_range_fn* fn)
+{
+    ty_pile* pile = s->pile;
+    int64_t count = (pile->count + SEARCH_PIECE - 1) / SEARCH_PIECE;
+    // One piece at a time on the caller too: it tells its piece by its first body.
+    ty_workers* shared = count > 1 ? workers : NULL;
+    ty_parallel_for(shared, pile->count, SEARCH_PIECE, fn, s);
+    for (int64_t k = 0; k < count; k++)
+    {
+        found* f = &s->pieces[k];
+        f->first_pair = pile->pair_count, f->first_touch = pile->touch_count;
+        pile->pair_count += f->pair_count, pile->touch_count += f->touch_count;
+    }
+    pile_reserve((void**)&pile->pairs, &pile->pair_capacity, pile->pair_count, sizeof(pair));
+    pile_reserve((void**)&pile->touches, &pile->touch_capacity, pile->touch_count, sizeof(touch));
+    pieces_join(s, count);
+}
+
+static void candidates_find(ty_pile* pile, ty_workers* workers)
 {
     float widest = 0.0f;
     for (int i = 0; i < pile->count; i++)
         widest = ty_max(widest, pile->poses[i].reach);
-    grid g = grid_create(pile, 2.0f * pile->max_radius * pile->growth + widest);
-    int neighbours[512], old = 0;
-    for (int i = 0; i < pile->count; i++)
-    {
-        int count = grid_neighbours(pile, &g, i, neighbours, 512);
-        for (int n = 0; n < count; n++)
-        {
-            int j = neighbours[n], first = pile->touch_count;
-            touches_find(pile, i, j, pair_margin(pile, i, j));
-            const pair* o = pile->old_pairs;
-            while (old < pile->old_wall_first && (o[old].a < i || (o[old].a == i && o[old].b < j)))
-                old++;
-            if (old < pile->old_wall_first && o[old].a == i && o[old].b == j)
-                impulses_keep(pile, first, &o[old]);
-            pair_push(pile, i, j, first);
-        }
-    }
-    grid_destroy(&g);
-}
-
-static void walls_find(ty_pile* pile)
-{
-    int walls = pile->def.container ? ty_container_wall_count(pile->def.container) : 0, old = pile->old_wall_first;
-    for (int i = 0; i < pile->count; i++)
-    {
-        int first = pile->touch_count;
-        const ty_ball* balls = pile_balls(pile, i);
-        float margin = pile->poses[i].reach;
-        const int ball_count = pile_ball_count(pile, i);
-        for (int k = 0; k < ball_count; k++)
-        {
-            ty_vec3 n;
-            for (int w = 0; w < walls; w++)
-                if (pile_wall(pile, w, balls[k].center, &n) < balls[k].radius + margin)
-                    touch_push(pile, k, w);
-            if (pile->lid && pile_wall(pile, PILE_LID, balls[k].center, &n) < balls[k].radius + margin)
-                touch_push(pile, k, PILE_LID);
-        }
-        while (old < pile->old_pair_count && pile->old_pairs[old].a < i)
-            old++;
-        if (old < pile->old_pair_count && pile->old_pairs[old].a == i)
-            impulses_keep(pile, first, &pile->old_pairs[old]);
-        pair_push(pile, i, PILE_WALL, first);
-    }
+    search s = {.pile = pile};
+    s.grid = body_grid_create(pile, 2.0f * pile->max_radius * pile->growth + widest);
+    s.pieces = TY_ALLOC(found, (pile->count + SEARCH_PIECE - 1) / SEARCH_PIECE);
+    search_run(&s, workers, pairs_find);
+    pile->wall_first = pile->pair_count;
+    search_run(&s, workers, walls_find);
+    ty_free(s.pieces);
+    body_grid_destroy(&s.grid);
 }
 
 // --- colours ---
@@ -277,7 +283,7 @@ static void lists_swap(ty_pile* pile)
     pile->touches = touches, pile->touch_capacity = touch_capacity, pile->touch_count = 0;
 }
 
-void pile_detect(ty_pile* pile, float margin)
+void pile_detect(ty_pile* pile, float margin, ty_workers* workers)
 {
     const float ahead = 12.0f / pile->def.rate; // s that a body's speed is looked ahead
     for (int i = 0; i < pile->count; i++)
@@ -290,9 +296,7 @@ void pile_detect(ty_pile* pile, float margin)
         pile->poses[i].seen_rotation = pile->bodies[i].rotation;
     }
     lists_swap(pile);
-    pairs_find(pile);
-    pile->wall_first = pile->pair_count;
-    walls_find(pile);
+    candidates_find(pile, workers);
     pairs_color(pile);
     pile->stale = false;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What one measures on a pile: speeds, overlaps, contacts, grains that float, depth below the surface, packing
 // fraction.
-#include "pile_state.h"
+#include "grid.h"
 
 #define NEAR_SHARE 0.02f // of the width: a gap up to here counts as a contact
 
@@ -81,7 +81,7 @@ void ty_pile_measure(ty_pile* pile, ty_pile_metrics* out, bool* held)
 {
     pile_refresh_all(pile);
     if (pile_moved(pile))
-        pile_detect(pile, PILE_MARGIN);
+        pile_detect(pile, PILE_MARGIN, NULL);
     support* supports = TY_ALLOC(support, pile->count);
     overlaps o = {0};
     for (int i = 0; i < pile->pair_count; i++)
@@ -168,22 +168,6 @@ void ty_pile_depth(const ty_pile* pile, float* depth)
     ty_free(h.y);
 }
 
-static bool inside_any(const ty_pile* pile, ty_vec3 p)
-{
-    for (int i = 0; i < pile->count; i++)
-    {
-        if (ty_length_sqr(ty_sub(p, pile->bodies[i].position)) > ty_sqr(pile->max_radius))
-            continue;
-        for (int k = 0; k < pile_ball_count(pile, i); k++)
-        {
-            const ty_ball* b = &pile_balls(pile, i)[k];
-            if (ty_length_sqr(ty_sub(p, b->center)) < ty_sqr(b->radius))
-                return true;
-        }
-    }
-    return false;
-}
-
 // Inside of the container and a width off its walls.
 static bool clear_of_walls(const ty_pile* pile, ty_vec3 p)
 {
@@ -205,7 +189,9 @@ static float phi_measure(const ty_pile* pile)
         return 0.0f;
     heights h = heights_create(pile);
     ty_rng rng = ty_rng_make((ty_seed){0}, 0x706869, (uint64_t)pile->count);
-    int tries = (int)ty_min(40000.0f, 6e7f / (float)pile->count), in = 0, all = 0;
+    body_grid grid = body_grid_create(pile, 1.01f * pile->max_radius);
+    const int tries = 40000;
+    int in = 0, all = 0;
     for (int i = 0; i < tries; i++)
     {
         float x = h.low.x + (float)h.size[0] * h.cell * ty_rng_float(&rng);
@@ -216,8 +202,9 @@ static float phi_measure(const ty_pile* pile)
         if (high <= low || !clear_of_walls(pile, p))
             continue;
         all++;
-        in += inside_any(pile, p);
+        in += body_grid_inside(pile, &grid, p);
     }
     ty_free(h.y);
+    body_grid_destroy(&grid);
     return all > 200 ? (float)in / (float)all : 0.0f;
 }

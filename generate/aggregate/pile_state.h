@@ -116,8 +116,9 @@ float pile_wall(const ty_pile* pile, int wall, ty_vec3 p, ty_vec3* normal);
 void pile_reserve(void** array, int* capacity, int needed, size_t size);
 
 // contact.c
-void pile_detect(ty_pile* pile, float margin); // candidates within margin, in id order, kept impulses, colours
-bool pile_moved(const ty_pile* pile);          // a ball may have moved more than .45 of its body's reach
+// Candidates within margin, in id order, with kept impulses and colours. Equal bits for any worker count.
+void pile_detect(ty_pile* pile, float margin, ty_workers* workers);
+bool pile_moved(const ty_pile* pile); // a ball may have moved more than .45 of its body's reach
 
 // Runs fn over the pairs of each colour in turn, then over the walls. Pairs of one colour share no body.
 typedef void pile_pair_fn(ty_pile* pile, pair* p);

@@ -101,7 +101,7 @@ void ty_pile_inflate(ty_pile* pile, const ty_fill_top* top, int sweeps, ty_worke
         if (k % (growing ? 4 : 8) == 0)
         {
             pile_refresh_all(pile);
-            pile_detect(pile, 0.25e-3f * pile->growth);
+            pile_detect(pile, 0.25e-3f * pile->growth, workers);
         }
         pile_project(pile, workers);
     }
@@ -120,7 +120,7 @@ void ty_pile_polish(ty_pile* pile, int sweeps, ty_workers* workers)
         if (pile_moved(pile))
         {
             pile_refresh_all(pile);
-            pile_detect(pile, PILE_MARGIN);
+            pile_detect(pile, PILE_MARGIN, workers);
         }
         pile_project(pile, workers);
     }

@@ -291,7 +291,7 @@ static void for_bodies(ty_pile* pile, ty_workers* workers, ty_range_fn* fn)
 void ty_pile_step(ty_pile* pile, ty_workers* workers)
 {
     if (pile_moved(pile))
-        pile_detect(pile, PILE_MARGIN);
+        pile_detect(pile, PILE_MARGIN, workers);
     for_bodies(pile, workers, bodies_accelerate);
     pile_each(pile, workers, pair_prepare);
     pile_sweep(pile, workers, pair_warm_start);
