@@ -103,6 +103,8 @@ json_t* ty_json_format(const char* format, ...) TY_PRINTF(1, 2);
 TY_CHECKED ty_status ty_json_print(json_t* value);
 // Writes it to a file, atomically, and releases it.
 TY_CHECKED ty_status ty_json_write(const char* path, json_t* value);
+// Whether the path ends in one of the endings (up to NULL); else a usage mistake that lists them.
+TY_CHECKED ty_status ty_output_check_ending(const ty_command* command, const char* output, const char* const* endings);
 // Whether a file can be written at path; leaves nothing there.
 TY_CHECKED ty_status ty_output_probe(const char* path, ty_error* error);
 // A file that is complete or absent, written as a stream. A failure of put, or of the disk, leaves the old one.
@@ -132,7 +134,7 @@ TY_CHECKED ty_status ty_develop(const ty_exr* exr, const ty_develop_def* def, co
 void ty_signals_install(void);
 
 extern const ty_command ty_command_render, ty_command_develop, ty_command_merge, ty_command_check, ty_command_info,
-    ty_command_params, ty_command_pack, ty_command_fill, ty_command_roots, ty_command_doctor;
+    ty_command_params, ty_command_pack, ty_command_fill, ty_command_roots, ty_command_export, ty_command_doctor;
 extern const ty_command ty_command_compare, ty_command_regress;
 extern const ty_command ty_command_turntable, ty_command_sweep;
 extern const ty_command ty_command_moisture, ty_command_calibrate;

@@ -5,18 +5,21 @@
 #include <string.h>
 #include <tsuya/base/file.h>
 #include <tsuya/base/log.h>
+#include <tsuya/geometry/aggregate_export.h>
 
 // What a command makes and where it may go.
 typedef struct product
 {
-    const char *command, *kind, *extension;
+    const char *command, *kind;
+    const char* const* extensions; // up to NULL
     bool is_sequence;
 } product;
 
+static const char *const fill_extensions[] = {"exr", NULL}, *const roots_extensions[] = {"ply", NULL};
 static const product products[] = {
-    {"pack", "aggregate", "glb", false},
-    {"fill", "fill", "exr", true},
-    {"roots", "roots", "ply", false},
+    {"pack", "aggregate", ty_aggregate_endings, false},
+    {"fill", "fill", fill_extensions, true},
+    {"roots", "roots", roots_extensions, false},
 };
 
 static const product* find_product(const ty_command* command)
@@ -27,21 +30,35 @@ static const product* find_product(const ty_command* command)
     return found;
 }
 
+ty_status ty_output_check_ending(const ty_command* command, const char* output, const char* const* endings)
+{
+    char list[128] = "";
+    for (int i = 0; endings[i]; i++)
+    {
+        if (strcmp(ty_path_extension(output), endings[i]) == 0)
+            return TY_OK;
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s.%s", i == 0 ? "" : endings[i + 1] ? ", " : " or ", endings[i]);
+    }
+    return ty_usage(command, "the output '%s' must end in %s", output, list);
+}
+
 static ty_status check_output(const ty_arguments* arguments, const product* p, const char* output)
 {
     ty_error error;
     char path[TY_PATH_MAX];
     if (!output)
         return ty_usage(arguments->command, "where to? give -o %s", arguments->command->options[0].value);
-    if (strcmp(ty_path_extension(output), p->extension) != 0)
-        return ty_usage(arguments->command, "the output '%s' must end in .%s", output, p->extension);
+    ty_status status = ty_output_check_ending(arguments->command, output, p->extensions);
+    if (status != TY_OK)
+        return status;
     if (ty_path_is_sequence(output) != p->is_sequence)
         return ty_usage(arguments->command,
                         p->is_sequence ? "the output '%s' needs #### where the number of a frame goes"
                                        : "the output '%s' is one file: it has no #",
                         output);
     ty_path_frame(output, 1, path);
-    ty_status status = ty_output_probe(path, &error); // before minutes of work
+    status = ty_output_probe(path, &error); // before minutes of work
     if (status != TY_OK)
         ty_log_error(&error);
     return status;
@@ -76,7 +93,7 @@ static ty_status run(const ty_arguments* arguments)
         TY_SCENE_OPTIONS,                                                                                              \
     }
 
-OPTIONS(pack_options, "OUT.glb", "the aggregate to write");
+OPTIONS(pack_options, "OUT.glb", "the aggregate to write; also .usda (USD), .ply (points) and .obj (one mesh)");
 OPTIONS(fill_options, "OUT.####.exr", "the frames to write, from 1");
 OPTIONS(roots_options, "OUT.ply", "the mesh to write");
 

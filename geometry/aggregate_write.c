@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Aggregate files: GLB with one mesh and one instanced node a prototype.
-#include "glb_build.h"
-#include "placement.h"
+#include "aggregate_write.h"
+#include "glb_mesh.h"
 #include <stdio.h>
 #include <string.h>
 #include <tsuya/base/memory.h>
 #include <tsuya/geometry/aggregate.h>
-
-enum
-{
-    VERTICES = 34962,
-    INDICES = 34963
-};
 
 // --- what may be written ---
 
@@ -65,7 +59,7 @@ static ty_status check_prototypes(const ty_aggregate* a, const char* path, ty_er
     return TY_OK;
 }
 
-static ty_status check_aggregate(const ty_aggregate* a, const char* path, ty_error* error)
+ty_status ty_aggregate_check_content(const ty_aggregate* a, const char* path, ty_error* error)
 {
     if (a->instance_count == 0 || a->prototype_count <= 0)
         return ty_error_set_at(error, TY_BAD_INPUT, path, 0, 0, "an aggregate without instances is not written");
@@ -82,88 +76,29 @@ static ty_status check_aggregate(const ty_aggregate* a, const char* path, ty_err
     return status == TY_OK ? check_prototypes(a, path, error) : status;
 }
 
-// --- meshes ---
-
-static json_t* list3(ty_vec3 v)
-{
-    return json_pack("[f, f, f]", (double)v.x, (double)v.y, (double)v.z);
-}
-
-static void add_range(ty_glb_builder* builder, int accessor, const ty_mesh* mesh)
-{
-    ty_bounds box = ty_bounds_empty();
-    for (uint32_t i = 0; i < mesh->vertex_count; i++)
-        box = ty_bounds_add(box, mesh->positions[i]);
-    json_t* object = json_array_get(builder->accessors, (size_t)accessor);
-    json_object_set_new(object, "min", list3(box.low));
-    json_object_set_new(object, "max", list3(box.high));
-}
-
-// "_" and the name in upper case.
-static void set_semantic(json_t* attributes, const char* name, int accessor)
-{
-    char semantic[40] = "_";
-    size_t n = 1;
-    for (; *name && n < sizeof semantic - 1; name++, n++)
-        semantic[n] = (char)(*name >= 'a' && *name <= 'z' ? *name - 'a' + 'A' : *name);
-    semantic[n] = '\0';
-    json_object_set_new(attributes, semantic, json_integer(accessor));
-}
-
-static void add_curvature(ty_glb_builder* builder, json_t* attributes, const ty_mesh* mesh)
-{
-    uint32_t n = mesh->vertex_count;
-    if (mesh->curvature_1 && mesh->curvature_2)
-    {
-        ty_vec2* both = TY_ALLOC(ty_vec2, n);
-        for (uint32_t i = 0; i < n; i++)
-            both[i] = (ty_vec2){mesh->curvature_1[i], mesh->curvature_2[i]};
-        set_semantic(attributes, "curvature", ty_glb_add(builder, both, n, TY_GLTF_FLOAT, 2, VERTICES));
-        ty_free(both);
-    }
-    if (mesh->direction_1)
-        set_semantic(attributes, "direction", ty_glb_add(builder, mesh->direction_1, n, TY_GLTF_FLOAT, 3, VERTICES));
-}
-
-// The number of a material of that name, added when there is none.
-static int find_material(json_t* materials, const char* name)
-{
-    int count = (int)json_array_size(materials);
-    for (int i = 0; i < count; i++)
-        if (strcmp(json_string_value(json_object_get(json_array_get(materials, (size_t)i), "name")), name) == 0)
-            return i;
-    json_array_append_new(materials, json_pack("{s:s}", "name", name));
-    return count;
-}
-
-static json_t* add_mesh(ty_glb_builder* builder, const ty_mesh* mesh, int index, json_t* materials)
-{
-    uint32_t n = mesh->vertex_count;
-    int position = ty_glb_add(builder, mesh->positions, n, TY_GLTF_FLOAT, 3, VERTICES);
-    add_range(builder, position, mesh);
-    json_t* attributes = json_pack("{s:i}", "POSITION", position);
-    int normal = ty_glb_add(builder, mesh->normals, n, TY_GLTF_FLOAT, 3, VERTICES);
-    json_object_set_new(attributes, "NORMAL", json_integer(normal));
-    if (mesh->uvs)
-        json_object_set_new(attributes, "TEXCOORD_0",
-                            json_integer(ty_glb_add(builder, mesh->uvs, n, TY_GLTF_FLOAT, 2, VERTICES)));
-    add_curvature(builder, attributes, mesh);
-    for (int i = 0; i < mesh->attribute_count; i++)
-    {
-        const ty_mesh_attribute* a = &mesh->attributes[i];
-        set_semantic(attributes, a->name, ty_glb_add(builder, a->values, n, TY_GLTF_FLOAT, a->components, VERTICES));
-    }
-    int indices =
-        ty_glb_add(builder, mesh->triangles, 3 * (size_t)mesh->triangle_count, TY_GLTF_UNSIGNED_INT, 1, INDICES);
-    char name[32];
-    snprintf(name, sizeof name, "prototype_%d", index);
-    json_t* primitive = json_pack("{s:o, s:i, s:i}", "attributes", attributes, "indices", indices, "mode", 4);
-    if (mesh->slot_count == 1 && mesh->slot_names[0][0])
-        json_object_set_new(primitive, "material", json_integer(find_material(materials, mesh->slot_names[0])));
-    return json_pack("{s:s, s:[o]}", "name", name, "primitives", primitive);
-}
-
 // --- instances ---
+
+const ty_instance_attribute* ty_aggregate_attribute_by_name(const ty_aggregate* a, int k)
+{
+    for (int i = 0; i < a->attribute_count; i++)
+    {
+        int before = 0;
+        for (int j = 0; j < a->attribute_count; j++)
+            before += strcmp(a->attributes[j].name, a->attributes[i].name) < 0;
+        if (before == k)
+            return &a->attributes[i];
+    }
+    TY_ASSERT(!"a name stands twice");
+    return NULL;
+}
+
+uint32_t ty_aggregate_split(const ty_aggregate* a, ty_placement* out)
+{
+    uint32_t sheared = 0;
+    for (uint32_t i = 0; i < a->instance_count; i++)
+        sheared += !ty_placement_split(&a->transforms[i], &out[i]);
+    return sheared;
+}
 
 // The instances of one prototype in order, and scratch for their columns.
 typedef struct group
@@ -215,7 +150,7 @@ static void add_matrices(ty_glb_builder* builder, const group* g, json_t* attrib
             const ty_affine* m = &g->aggregate->transforms[g->members[i]];
             v[i] = column == 0 ? m->x : column == 1 ? m->y : m->z;
         }
-        set_semantic(attributes, names[column], ty_glb_add(builder, v, g->count, TY_GLTF_FLOAT, 3, 0));
+        ty_glb_set_semantic(attributes, names[column], ty_glb_add(builder, v, g->count, TY_GLTF_FLOAT, 3, 0));
     }
 }
 
@@ -225,14 +160,15 @@ static void add_scalars(ty_glb_builder* builder, const group* g, bool ordered, j
     uint32_t* ids = (uint32_t*)g->values;
     for (uint32_t i = 0; i < g->count; i++)
         ids[i] = a->ids[g->members[i]];
-    set_semantic(attributes, "id", ty_glb_add_integers(builder, ids, g->count));
+    ty_glb_set_semantic(attributes, "id", ty_glb_add_integers(builder, ids, g->count));
     if (!ordered)
-        set_semantic(attributes, "order", ty_glb_add_integers(builder, g->members, g->count));
+        ty_glb_set_semantic(attributes, "order", ty_glb_add_integers(builder, g->members, g->count));
     for (int k = 0; k < a->attribute_count; k++)
     {
         for (uint32_t i = 0; i < g->count; i++)
             g->values[i] = a->attributes[k].values[g->members[i]];
-        set_semantic(attributes, a->attributes[k].name, ty_glb_add(builder, g->values, g->count, TY_GLTF_FLOAT, 1, 0));
+        ty_glb_set_semantic(attributes, a->attributes[k].name,
+                            ty_glb_add(builder, g->values, g->count, TY_GLTF_FLOAT, 1, 0));
     }
 }
 
@@ -305,7 +241,7 @@ static ty_status make_extras(const ty_aggregate* a, const char* path, json_t** o
 
 ty_status ty_aggregate_write(const char* path, const ty_aggregate* aggregate, ty_error* error)
 {
-    ty_status status = check_aggregate(aggregate, path, error);
+    ty_status status = ty_aggregate_check_content(aggregate, path, error);
     if (status != TY_OK)
         return status;
     json_t* extras = NULL;
@@ -319,7 +255,11 @@ ty_status ty_aggregate_write(const char* path, const ty_aggregate* aggregate, ty
         ty_glb_builder_init(&builder);
         json_t *meshes = json_array(), *materials = json_array();
         for (int p = 0; p < aggregate->prototype_count; p++)
-            json_array_append_new(meshes, add_mesh(&builder, aggregate->prototypes[p], p, materials));
+        {
+            char name[32];
+            snprintf(name, sizeof name, "prototype_%d", p);
+            json_array_append_new(meshes, ty_glb_mesh_json(&builder, aggregate->prototypes[p], name, materials));
+        }
         json_object_set_new(root, "meshes", meshes);
         if (json_array_size(materials) > 0)
             json_object_set(root, "materials", materials);

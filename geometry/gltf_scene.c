@@ -87,7 +87,9 @@ static ty_status read_all(ty_gltf_scene* scene, const void* bytes, size_t size, 
         return status;
     warn_ignored(scene);
     const json_t* extras = json_object_get(json_object_get(scene->source->root, "asset"), "extras");
-    scene->is_aggregate = json_object_get(extras, "tsuya") != NULL;
+    // A realised one has extras, but is a mesh.
+    bool instanced = json_array_size(json_object_get(scene->source->root, "extensionsUsed")) > 0;
+    scene->is_aggregate = instanced && json_object_get(extras, "tsuya") != NULL;
     status = ty_gltf_read_look(scene, error);
     return status == TY_OK ? ty_gltf_read_nodes(scene, error) : status;
 }

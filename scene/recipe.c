@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <tsuya/base/log.h>
+#include <tsuya/geometry/aggregate_export.h>
 #include <tsuya/geometry/mesh_file.h>
 
 // Where a recipe may stand in an asset, by what it makes.
@@ -178,7 +179,7 @@ ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* 
     if (made.aggregate)
     {
         sign(&made.aggregate->recipe, &made.aggregate->hash, ty_string_copy(text), key);
-        written = ty_aggregate_write(output, made.aggregate, &write_error);
+        written = ty_aggregate_export(output, made.aggregate, false, &write_error);
     }
     if (made.mesh)
     {

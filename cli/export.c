@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// `tsuya export`: an aggregate for other programs.
+#include "cli.h"
+#include <stdio.h>
+#include <string.h>
+#include <tsuya/base/file.h>
+#include <tsuya/base/log.h>
+#include <tsuya/geometry/aggregate_export.h>
+#include <tsuya/geometry/mesh_file.h>
+
+static ty_status check(const ty_arguments* arguments, const char* output)
+{
+    if (!output)
+        return ty_usage(arguments->command, "where to? give -o %s", arguments->command->options[0].value);
+    bool is_points = strcmp(ty_path_extension(arguments->positional[0]), "ply") == 0;
+    if (is_points != ty_argument_has(arguments, "prototype"))
+        return ty_usage(arguments->command,
+                        is_points ? "points (.ply) need their mesh: give --prototype MESH"
+                                  : "--prototype goes with points (.ply): '%s' has its own",
+                        arguments->positional[0]);
+    return ty_output_check_ending(arguments->command, output, ty_aggregate_endings);
+}
+
+static ty_status read_input(const ty_arguments* arguments, ty_aggregate** out, ty_error* error)
+{
+    const char* prototype = ty_argument_text(arguments, "prototype", NULL);
+    ty_mesh* mesh = NULL;
+    ty_status status = prototype ? ty_mesh_read(prototype, &mesh, error) : TY_OK;
+    if (status == TY_OK)
+        status = ty_aggregate_read(arguments->positional[0], mesh, out, error);
+    ty_mesh_destroy(mesh);
+    return status;
+}
+
+static ty_status run(const ty_arguments* arguments)
+{
+    const char* output = ty_argument_text(arguments, "output", NULL);
+    ty_status status = check(arguments, output);
+    if (status != TY_OK)
+        return status;
+    ty_error error;
+    ty_aggregate* aggregate = NULL;
+    status = ty_output_probe(output, &error);
+    if (status == TY_OK)
+        status = read_input(arguments, &aggregate, &error);
+    if (status == TY_OK)
+        status = ty_aggregate_export(output, aggregate, ty_argument_has(arguments, "realise"), &error);
+    ty_aggregate_destroy(aggregate);
+    if (status != TY_OK)
+    {
+        ty_log_error(&error);
+        return status;
+    }
+    printf("%s\n", output);
+    return ty_output_finish();
+}
+
+static const ty_option options[] = {
+    {"output", 'o', "OUT", "where to, by its ending: .usda (PointInstancer), .ply (points), .obj (one mesh), .glb"},
+    {"realise", 0, NULL, "one mesh of all instances, for programs without instancing (.glb, .ply, .obj)"},
+    {"prototype", 0, "MESH", "the mesh of points (IN.ply)"},
+};
+
+const ty_command ty_command_export = {
+    "export",
+    "IN -o OUT",
+    "convert an aggregate for other programs",
+    "tsuya export out/rice_heap.glb -o out/rice_heap.usda",
+    1,
+    1,
+    options,
+    TY_PARAM_COUNT(options),
+    run,
+};

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+# Aggregates for other programs: each file against its specification, one mesh as Blender counts it, what is refused.
+cat >heap.yaml <<'Y'
+tsuya: 1
+kind: aggregate
+element: { variants: 3 }
+fill: { count: 14 }
+Y
+cat >eggs.yaml <<'Y'
+tsuya: 1
+kind: aggregate
+element: { kind: roe, roe: { preset: ikura } }
+fill: { count: 6 }
+Y
+for name in heap eggs; do
+    expect 0 "$tsuya" pack $name.yaml -o $name.glb
+    expect 0 "$tsuya" export $name.glb -o $name.usda
+    python3 "$TSUYA_SOURCE/tests/cli/export_files.py" $name.glb $name.usda || fail "$name: not as the specifications say"
+    for ending in ply obj glb; do expect 0 "$tsuya" export $name.glb --realise -o $name.mesh.$ending; done
+done
+
+# The recipe gives the same files by itself.
+expect 0 "$tsuya" pack heap.yaml -o again.usda
+same again.usda heap.usda
+expect 0 "$tsuya" pack heap.yaml -o points.ply
+expect 0 "$tsuya" export heap.glb -o again.ply
+same again.ply points.ply
+expect 0 "$tsuya" export points.ply --prototype heap.mesh.ply -o many.glb
+expect 0 "$tsuya" info many.glb
+prints 'instances: 14'
+expect 0 "$tsuya" info heap.mesh.glb --recipe
+prints 'variants: 3'
+
+expect 2 "$tsuya" export heap.glb
+says "give -o"
+expect 2 "$tsuya" export heap.glb -o heap.abc
+says ".glb, .usda, .ply or .obj"
+expect 2 "$tsuya" export points.ply -o x.glb
+says "--prototype"
+expect 3 "$tsuya" export heap.glb --realise -o x.usda
+absent x.usda
+expect 4 "$tsuya" export nothing.glb -o x.usda
+absent x.usda
+
+command -v blender >/dev/null || skip "no Blender"
+count() { "$tsuya" info "$1" --json | python3 -c 'import json, sys; print(json.load(sys.stdin)["vertices"])'; }
+list=
+for ending in glb ply obj; do list="$list heap.mesh.$ending=$(count heap.mesh.ply)"; done
+expect 0 blender -b --factory-startup --python "$TSUYA_SOURCE/tests/cli/blender_import.py" -- $list
+for file in $list; do prints "imported ${file%=*}"; done
