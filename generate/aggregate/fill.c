@@ -134,6 +134,25 @@ ty_status ty_fill_plan(const ty_container* container, double volume, float heap,
                         *capacity * 1e6, volume * 1e6);
 }
 
+double ty_fill_space(const ty_container* container, float level, float heap, float inset)
+{
+    ty_bounds interior = ty_container_interior(container);
+    bool open = ty_container_is_open(container);
+    float rx = 0.5f * (interior.high.x - interior.low.x), rz = 0.5f * (interior.high.z - interior.low.z);
+    float crown = open ? ty_min(heap, STEEPEST_CROWN * ty_min(rx, rz)) : 0.0f;
+    float top = level > 0.0f ? ty_min(interior.low.y + level, interior.high.y) : interior.high.y;
+    ty_fill_top surface = {top, crown, rx, rz, ty_container_is_turned(container)};
+    space s = {.container = container, .bounds = interior, .inset = inset};
+    s.bounds.high.y += crown;
+    space_sample(&s);
+    double sum = 0.0;
+    for (int i = 0; i < s.count; i++)
+        if (s.samples[i].p.y + inset <= ty_fill_top_height(&surface, s.samples[i].p))
+            sum += (double)s.samples[i].weight;
+    ty_free(s.samples);
+    return sum;
+}
+
 // --- Poisson-disk points ---
 
 typedef struct darts

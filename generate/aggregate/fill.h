@@ -8,6 +8,10 @@
 TY_CHECKED ty_status ty_fill_plan(const ty_container* container, double volume, float heap, float inset,
                                   ty_fill_top* top, double* capacity, ty_error* error);
 
+// The volume in which elements lie up to level over the lowest point of the inside (0: up to the rim, or all of it),
+// with a crown of heap on it, walls and surface left out as above.
+double ty_fill_space(const ty_container* container, float level, float heap, float inset);
+
 // count points at even distances (Poisson disk: Bridson 2007 by dart throwing) below top, at least inset off the walls,
 // sorted bottom-up in blocks of spacing. Deterministic in seed. volume as planned for; out has room for count.
 TY_CHECKED ty_status ty_fill_seeds(const ty_container* container, const ty_fill_top* top, float inset, double volume,

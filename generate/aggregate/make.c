@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes an aggregate from its recipe: fill, settle, take away what is too much, polish until nothing floats, write
 // down.
-#include "fill.h"
+#include "kit.h"
 #include "roe.h"
+#include "start.h"
 #include <string.h>
 #include <tsuya/base/log.h>
 
@@ -10,23 +11,6 @@ enum
 {
     ROUNDS = 12, // of settling and looking for grains that float
 };
-
-#define FALLING_TILT 0.25f // rad, largest angle with the horizontal of a grain that falls onto the pile
-
-typedef struct kit
-{
-    const ty_aggregate_recipe* recipe; // complete
-    ty_workers* workers;
-    ty_element grains[TY_ELEMENT_MAX_VARIANTS];
-    int grain_count;
-    float volume; // m^3, of the mean grain
-    ty_container* container;
-    ty_fill_top top;
-    ty_pile* pile;
-    ty_rng rng;
-    int lost, replaced;
-    bool rest;
-} kit;
 
 // --- bodies ---
 
@@ -39,7 +23,7 @@ static ty_quat rotation_draw(const ty_fill_def* fill, float steepest, ty_rng* rn
     return ty_quat_multiply(heading, ty_quat_multiply(tilt, roll));
 }
 
-static ty_body body_draw(kit* k, ty_vec3 position, float steepest)
+ty_body kit_body(kit* k, ty_vec3 position, float steepest)
 {
     ty_body body = {.position = position, .rotation = rotation_draw(&k->recipe->fill, steepest, &k->rng)};
     const ty_element_def* element = &k->recipe->element; // meshes of grains differ in size already
@@ -66,10 +50,10 @@ static ty_status recipe_check(const ty_aggregate_recipe* r, ty_error* error)
     if (e->variants < 1 || e->variants > TY_ELEMENT_MAX_VARIANTS)
         return ty_error_set(error, TY_BAD_INPUT, "element.variants: %d; it lies in 1..%d", e->variants,
                             TY_ELEMENT_MAX_VARIANTS);
-    if (r->fill.count < 1 || r->fill.count > 200000)
-        return ty_error_set(error, TY_BAD_INPUT, "fill.count: %d; it lies in 1..200000", r->fill.count);
-    if (!(r->fill.density >= 0.3f && r->fill.density <= 0.68f))
-        return ty_error_set(error, TY_BAD_INPUT, "fill.density: %g; grains pack to 0.3..0.68", (double)r->fill.density);
+    if (r->fill.count < 1 || r->fill.count > TY_FILL_MOST)
+        return ty_error_set(error, TY_BAD_INPUT, "fill.count: %d; it lies in 1..%d", r->fill.count, TY_FILL_MOST);
+    if (!(r->fill.density >= 0.1f && r->fill.density <= 0.95f))
+        return ty_error_set(error, TY_BAD_INPUT, "fill.density: %g; it lies in 0.1..0.95", (double)r->fill.density);
     return TY_OK;
 }
 
@@ -107,73 +91,12 @@ static ty_status grains_make(kit* k, ty_error* error)
     return TY_OK;
 }
 
-// Lets grains fall onto the pile: in layers over its planned surface, so far apart that they do not touch.
-static void grains_drop(kit* k, int count)
-{
-    float length = 1.1f * k->recipe->element.length * (1.0f + 2.0f * k->recipe->element.variation);
-    ty_bounds interior = ty_container_interior(k->container);
-    ty_vec3 center = ty_mul(ty_add(interior.low, interior.high), 0.5f);
-    float radius = 0.58f * ty_min(k->top.radius_x, k->top.radius_z), above = 0.6f * length;
-    for (int i = 0; i < ty_pile_count(k->pile); i++) // over all that is there already
-    {
-        ty_vec3 p = ty_pile_bodies(k->pile)[i].position;
-        above = ty_max(above, p.y - ty_fill_top_height(&k->top, p) + 0.6f * length);
-    }
-    int across = (int)(2.0f * radius / length) + 1, cells = across * across;
-    int start = (int)(ty_rng_float(&k->rng) * (float)cells);
-    for (int placed = 0, n = 0; placed < count; n++)
-    {
-        int cell = (start + n) % cells;
-        float jitter = 0.12f * length, x = ((float)(cell % across) - 0.5f * (float)(across - 1)) * length;
-        float z = ((float)(cell / across) - 0.5f * (float)(across - 1)) * length;
-        x += ty_rng_range(&k->rng, -jitter, jitter);
-        z += ty_rng_range(&k->rng, -jitter, jitter);
-        float chance = ty_rng_float(&k->rng), layers = (float)(n / cells);
-        if (x * x + z * z > radius * radius || chance > 0.85f) // some places stay empty, so that no lattice shows
-            continue;
-        ty_vec3 p = {center.x + x, 0.0f, center.z + z};
-        p.y = ty_fill_top_height(&k->top, p) + above + layers * 0.55f * length;
-        ty_body body = body_draw(k, p, ty_min(k->recipe->fill.tilt, FALLING_TILT));
-        ty_pile_add(k->pile, &body, 1);
-        placed++;
-    }
-}
-
-static ty_status pile_fill(kit* k, ty_error* error)
-{
-    const ty_fill_def* fill = &k->recipe->fill;
-    int count = fill->count;
-    if (ty_container_is_open(k->container))
-        count -= (int)((float)count * fill->sprinkle);
-    float inset = 0.25f * k->recipe->element.width;
-    double volume = (double)count * (double)k->volume / (double)fill->density, capacity;
-    ty_status status = ty_fill_plan(k->container, volume, fill->heap, inset, &k->top, &capacity, error);
-    if (status != TY_OK)
-        return ty_error_set(error, status, "fill.count: %d grains at a density of %g; the container holds at most %d",
-                            fill->count, (double)fill->density, (int)(capacity / volume * (double)fill->count));
-    ty_vec3* points = TY_TRY_ALLOC(ty_vec3, count);
-    if (!points)
-        return ty_error_set(error, TY_NO_MEMORY, "no memory for %d grains", count);
-    status = ty_fill_seeds(k->container, &k->top, inset, volume, k->recipe->seed, count, points, error);
-    for (int i = 0; i < count && status == TY_OK; i++)
-    {
-        ty_body body = body_draw(k, points[i], fill->tilt);
-        ty_pile_add(k->pile, &body, 1);
-    }
-    ty_free(points);
-    if (status != TY_OK)
-        return status;
-    ty_pile_inflate(k->pile, &k->top, fill->sweeps, k->workers);
-    grains_drop(k, fill->count - count);
-    return TY_OK;
-}
-
 // --- adjust ---
 
 // Settles; drops a new grain for each that is lost over the rim.
 static ty_status pile_rest(kit* k, ty_error* error)
 {
-    int allowed = 20 + k->recipe->fill.count / 4;
+    int allowed = 20 + k->count / 4;
     ty_pile_end end = TY_PILE_LOST;
     while (end == TY_PILE_LOST && k->lost <= allowed)
     {
@@ -181,15 +104,15 @@ static ty_status pile_rest(kit* k, ty_error* error)
         end = ty_pile_settle(k->pile, k->recipe->settle.max_seconds, k->workers, &lost);
         k->lost += lost;
         k->replaced += lost;
-        grains_drop(k, lost);
+        kit_drop(k, lost);
     }
     k->rest = end == TY_PILE_REST;
     if (end == TY_PILE_CANCELED)
         return ty_error_set(error, TY_INTERRUPTED, "interrupted while settling");
     if (end == TY_PILE_LOST)
         return ty_error_set(error, TY_BAD_INPUT,
-                            "fill.count: %d grains do not stay in the container: %d fell over its rim",
-                            k->recipe->fill.count, k->lost);
+                            "fill.count: %d grains do not stay in the container: %d fell over its rim", k->count,
+                            k->lost);
     return TY_OK;
 }
 
@@ -217,13 +140,13 @@ static void floating_replace(kit* k, bool* held)
         held[i] = !held[i];
     ty_pile_remove(k->pile, held);
     k->replaced += count - ty_pile_count(k->pile);
-    grains_drop(k, count - ty_pile_count(k->pile));
+    kit_drop(k, count - ty_pile_count(k->pile));
 }
 
 // Polishes a copy; where a grain floats after that, the unpolished pile settles on with that grain replaced or stirred.
 static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
 {
-    int count = k->recipe->fill.count;
+    int count = k->count;
     ty_body* kept = TY_ALLOC(ty_body, count);
     bool* held = TY_ALLOC(bool, count);
     ty_status status = TY_OK;
@@ -285,14 +208,21 @@ static void attributes_write(const kit* k, ty_aggregate* out)
 
 static char* metrics_write(const kit* k, const ty_pile_metrics* m)
 {
+    static const char* const starts[] = {"inflate", "thesis", "lattice"};
+    float repeat = ty_pile_repeat(ty_pile_bodies(k->pile), ty_pile_count(k->pile), k->recipe->element.width);
     return ty_string_format("{\"count\": %d, \"phi\": %.4f, \"contacts\": %.3f, \"floating\": %d, "
                             "\"overlap_max_percent\": %.4f, \"overlap_mean_percent\": %.5f, \"speed_rms_mm_s\": %.4f, "
                             "\"speed_max_mm_s\": %.4f, \"rest\": %s, \"substeps\": %d, \"lost\": %d, "
-                            "\"replaced\": %d, \"level_mm\": %.3f, \"crown_mm\": %.3f}",
+                            "\"replaced\": %d, \"level_mm\": %.3f, \"crown_mm\": %.3f, \"start\": \"%s\", "
+                            "\"removed\": %d, \"start_overlap_max_percent\": %.4f, "
+                            "\"start_overlap_mean_percent\": %.5f, \"start_repeat_percent\": %.3f, "
+                            "\"repeat_percent\": %.3f}",
                             m->count, (double)m->phi, (double)m->contacts, m->floating, (double)m->overlap_max * 100.0,
                             (double)m->overlap_mean * 100.0, (double)m->speed_rms * 1e3, (double)m->speed_max * 1e3,
                             k->rest ? "true" : "false", m->substeps, k->lost, k->replaced, (double)k->top.level * 1e3,
-                            (double)k->top.crown * 1e3);
+                            (double)k->top.crown * 1e3, starts[k->recipe->fill.start], k->removed,
+                            (double)k->start.overlap_max * 100.0, (double)k->start.overlap_mean * 100.0,
+                            (double)k->start_repeat * 100.0, (double)repeat * 100.0);
 }
 
 static ty_aggregate* grains_write(kit* k, const ty_body* bodies, uint32_t count)
@@ -350,7 +280,7 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
     def.container = k->container;
     k->pile = ty_pile_create(&def);
     double prepared = ty_time_now();
-    status = pile_fill(k, error);
+    status = kit_fill(k, error);
     double filled = ty_time_now();
     ty_pile_metrics metrics = {0};
     if (status == TY_OK)

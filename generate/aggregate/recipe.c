@@ -14,7 +14,8 @@ ty_aggregate_recipe ty_aggregate_recipe_default(void)
                  .tilt = TY_PI / 3.0f,
                  .roll = TY_PI,
                  .sprinkle = 0.06f,
-                 .sweeps = 400},
+                 .sweeps = 400,
+                 .thesis = {.refine = 1.0f, .offset = 0.0f, .remove = 1.0f}},
         .settle = {pile.friction, pile.rolling, 3.0f, pile.rate, 200},
         .moisture = {.variation = 0.8f, .drying = 0.4f},
         .seed = {7},
@@ -134,6 +135,30 @@ const ty_param_table* ty_container_params(void)
 
 // --- fill, settle, moisture ---
 
+static const char* const fill_starts[] = {"inflate", "thesis", "lattice", NULL};
+static const char* const fill_targets[] = {"count", "level", "density", NULL};
+
+static void thesis_set_default(void* def)
+{
+    *(ty_thesis_def*)def = ty_aggregate_recipe_default().fill.thesis;
+}
+
+#define OWNER ty_thesis_def
+static const ty_param thesis_rows[] = {
+    FIELD("refine", TY_PARAM_FLOAT, "", 0, 4, refine, "farthest move inwards, of the distance between points"),
+    FIELD("offset", TY_PARAM_FLOAT, "mm", 0, 100, offset, "overlap that does not count"),
+    FIELD("remove", TY_PARAM_FLOAT, "", 0, 100, remove,
+          "cost above which an element goes, of the farthest move: 1 = all that overlap, more = some overlap stays"),
+};
+#undef OWNER
+
+static const ty_param_table thesis_table = {"aggregate.fill.thesis",
+                                            "The filling of Gan 2023, with start thesis.",
+                                            sizeof(ty_thesis_def),
+                                            thesis_set_default,
+                                            thesis_rows,
+                                            TY_PARAM_COUNT(thesis_rows)};
+
 static void fill_set_default(void* def)
 {
     *(ty_fill_def*)def = ty_aggregate_recipe_default().fill;
@@ -141,14 +166,21 @@ static void fill_set_default(void* def)
 
 #define OWNER ty_fill_def
 static const ty_param fill_rows[] = {
-    FIELD("count", TY_PARAM_INT, "", 1, 200000, count, "grains in the result"),
-    FIELD("density", TY_PARAM_FLOAT, "", 0.3, 0.68, density, "volume share of the grains before they settle"),
+    {"start", TY_PARAM_ENUM, "", 0, 0, fill_starts, NULL, offsetof(OWNER, start),
+     "how the elements are placed: grown in place; moved and taken out by the cost of Gan 2023; in a lattice", false},
+    {"target", TY_PARAM_ENUM, "", 0, 0, fill_targets, NULL, offsetof(OWNER, target),
+     "what is asked for: a count; or a level or a density, which give the count", false},
+    FIELD("count", TY_PARAM_INT, "", 1, TY_FILL_MOST, count, "grains in the result, with target count"),
+    FIELD("density", TY_PARAM_FLOAT, "", 0.1, 0.95, density, "volume share of the grains before they settle"),
+    FIELD("level", TY_PARAM_FLOAT, "mm", 0, 1e6, level,
+          "with target level: height over the lowest point inside; 0 = the rim, or the whole volume"),
     FIELD("heap", TY_PARAM_FLOAT, "mm", 0, 1000, heap, "height of the crown; rises further when the vessel is full"),
     FIELD("tilt", TY_PARAM_FLOAT, "deg", 0, 90, tilt, "largest angle of a grain with the horizontal, as filled"),
     FIELD("roll", TY_PARAM_FLOAT, "deg", 0, 180, roll, "largest turn about its own length, as filled"),
     FIELD("sprinkle", TY_PARAM_FLOAT, "", 0, 0.5, sprinkle,
           "share of the grains that fall onto an open pile from above"),
     FIELD("sweeps", TY_PARAM_INT, "", 50, 5000, sweeps, "of the inflation"),
+    {"thesis", TY_PARAM_GROUP, "", 0, 0, NULL, &thesis_table, offsetof(OWNER, thesis), "with start thesis", false},
 };
 #undef OWNER
 

@@ -4,15 +4,46 @@
 #include <tsuya/generate/asset.h>
 #include <tsuya/generate/pile.h>
 
+enum
+{
+    TY_FILL_MOST = 1000000, // grains
+};
+
+typedef enum ty_fill_start
+{
+    TY_FILL_INFLATE, // grow from half the size at even distances, pushing each other apart
+    TY_FILL_THESIS,  // Gan 2023: moved inwards to where a cost of overlap is least, or taken out
+    TY_FILL_LATTICE, // rows of elements that all lie alike: the start of a full simulation
+} ty_fill_start;
+
+typedef enum ty_fill_target
+{
+    TY_FILL_COUNT,   // level from count and density
+    TY_FILL_LEVEL,   // count from level and density
+    TY_FILL_DENSITY, // count from density, up to the rim or in the whole volume
+} ty_fill_target;
+
+// The numbers of equations 1 to 3 of Gan 2023.
+typedef struct ty_thesis_def
+{
+    float refine; // C_refine: farthest move, of the distance between points, 0..4
+    float offset; // T: overlap that does not count, m
+    float remove; // D, of the farthest move: 1 takes out all that overlap, more lets some overlap stay, 0..100
+} ty_thesis_def;
+
 typedef struct ty_fill_def
 {
-    int count;      // grains in the result, 1..200000
-    float density;  // volume share of the grains when filled, 0.3..0.68; settling adds a little
+    int start;      // ty_fill_start
+    int target;     // ty_fill_target
+    int count;      // grains in the result, 1..TY_FILL_MOST
+    float density;  // volume share of the grains when filled, 0.1..0.95; settling adds a little
+    float level;    // m over the lowest point of the inside, with TY_FILL_LEVEL; 0 = the rim
     float heap;     // m, height of the crown above its own edge; rises where the vessel is full
     float tilt;     // rad, largest angle of a grain's length with the horizontal when filled, 0..pi/2
     float roll;     // rad, largest turn about its own length, 0..pi
     float sprinkle; // share of the grains that fall onto an open pile from above, 0..0.5
     int sweeps;     // of the inflation, 50..5000
+    ty_thesis_def thesis;
 } ty_fill_def;
 
 typedef struct ty_settle_def
