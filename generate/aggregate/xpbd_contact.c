@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contacts of elastic bodies: found on a grid in id order, coloured, and projected once a substep with friction and
+// the pull of water. Multipliers begin at 0 each time: friction undoes the slip of that substep alone.
+#include "xpbd_state.h"
+#include <string.h>
+
+// --- walls ---
+
+float xpbd_wall(const ty_xpbd* x, int wall, ty_vec3 p, ty_vec3* normal)
+{
+    if (wall == XPBD_LID)
+    {
+        *normal = ty_vec3_make(0.0f, -1.0f, 0.0f);
+        return x->lid - p.y;
+    }
+    if (x->squeeze == 1.0f)
+        return ty_container_wall(x->def.container, wall, p, normal);
+    float low = ty_container_interior(x->def.container).low.y; // the distance to first order: value over gradient
+    float gap =
+        ty_container_wall(x->def.container, wall, ty_vec3_make(p.x, low + (p.y - low) / x->squeeze, p.z), normal);
+    normal->y /= x->squeeze;
+    float steepness = ty_length(*normal);
+    *normal = ty_mul(*normal, 1.0f / steepness);
+    return gap / steepness;
+}
+
+// --- candidates ---
+
+typedef struct grid
+{
+    ty_vec3 low;
+    float cell;
+    int size[3];
+    int *start, *sorted;
+} grid;
+
+static void grid_cell(const grid* g, ty_vec3 p, int at[3])
+{
+    float f[3] = {(p.x - g->low.x) / g->cell, (p.y - g->low.y) / g->cell, (p.z - g->low.z) / g->cell};
+    for (int k = 0; k < 3; k++)
+        at[k] = (int)ty_clamp(f[k], 0.0f, (float)(g->size[k] - 1));
+}
+
+static int grid_index(const grid* g, const int at[3])
+{
+    return (at[2] * g->size[1] + at[1]) * g->size[0] + at[0];
+}
+
+static grid grid_create(const ty_xpbd* x)
+{
+    grid g = {.cell = XPBD_MARGIN};
+    ty_bounds b = ty_bounds_empty();
+    float widest = 0.0f;
+    for (int i = 0; i < x->body_count; i++)
+    {
+        b = ty_bounds_add(b, x->bodies[i].center);
+        widest = ty_max(widest, x->bodies[i].radius);
+    }
+    g.cell += 2.0f * widest;
+    g.low = b.low;
+    float extent[3] = {b.high.x - b.low.x, b.high.y - b.low.y, b.high.z - b.low.z};
+    for (int k = 0; k < 3; k++)
+        g.size[k] = (int)ty_clamp(extent[k] / g.cell + 1.0f, 1.0f, 128.0f);
+    int cells = g.size[0] * g.size[1] * g.size[2], at[3];
+    g.start = TY_ALLOC(int, cells + 2);
+    g.sorted = TY_ALLOC(int, x->body_count);
+    for (int i = 0; i < x->body_count; i++)
+    {
+        grid_cell(&g, x->bodies[i].center, at);
+        g.start[grid_index(&g, at) + 2]++;
+    }
+    for (int c = 0; c < cells; c++)
+        g.start[c + 2] += g.start[c + 1];
+    for (int i = 0; i < x->body_count; i++)
+    {
+        grid_cell(&g, x->bodies[i].center, at);
+        g.sorted[g.start[grid_index(&g, at) + 1]++] = i;
+    }
+    return g;
+}
+
+// Bodies after i that may come within the margin, ascending.
+static int grid_neighbours(const ty_xpbd* x, const grid* g, int i, int* out, int limit)
+{
+    int at[3], count = 0;
+    const soft* body = &x->bodies[i];
+    grid_cell(g, body->center, at);
+    for (int n = 0; n < 27; n++)
+    {
+        int to[3] = {at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1};
+        bool in = true;
+        for (int k = 0; k < 3; k++)
+            in = in && to[k] >= 0 && to[k] < g->size[k];
+        int cell = in ? grid_index(g, to) : 0;
+        for (int k = in ? g->start[cell] : 0; in && k < g->start[cell + 1]; k++)
+        {
+            int j = g->sorted[k], place = count;
+            float reach = body->radius + x->bodies[j].radius + XPBD_MARGIN;
+            if (j <= i || count == limit || ty_length_sqr(ty_sub(body->center, x->bodies[j].center)) > reach * reach)
+                continue;
+            for (; place > 0 && out[place - 1] > j; place--)
+                out[place] = out[place - 1];
+            out[place] = j;
+            count++;
+        }
+    }
+    return count;
+}
+
+static void near_push(ty_xpbd* x, int a, int b)
+{
+    xpbd_reserve((void**)&x->nears, &x->near_capacity, x->near_count + 1, sizeof(near));
+    x->nears[x->near_count++] = (near){.a = a, .b = b};
+}
+
+static void couple_push(ty_xpbd* x, int a, int b, int first)
+{
+    if (x->near_count == first)
+        return;
+    xpbd_reserve((void**)&x->couples, &x->couple_capacity, x->couple_count + 1, sizeof(couple));
+    x->couples[x->couple_count++] = (couple){a, b, first, x->near_count - first};
+}
+
+static void bodies_near(ty_xpbd* x, int i, int j)
+{
+    const soft *a = &x->bodies[i], *b = &x->bodies[j];
+    int first = x->near_count;
+    for (int s = a->first; s < a->first + a->count; s++)
+    {
+        const particle *p = &x->particles[s], *q = x->particles;
+        if (ty_length_sqr(ty_sub(p->x, b->center)) > ty_sqr(p->radius + b->radius + XPBD_MARGIN))
+            continue;
+        for (int t = b->first; t < b->first + b->count; t++)
+            if (ty_length_sqr(ty_sub(p->x, q[t].x)) < ty_sqr(p->radius + q[t].radius + XPBD_MARGIN))
+                near_push(x, s, t);
+    }
+    couple_push(x, i, j, first);
+}
+
+static void walls_near(ty_xpbd* x)
+{
+    int walls = x->def.container ? ty_container_wall_count(x->def.container) : 0;
+    ty_vec3 n;
+    for (int i = 0; i < x->body_count; i++)
+    {
+        int first = x->near_count;
+        for (int s = x->bodies[i].first; s < x->bodies[i].first + x->bodies[i].count; s++)
+        {
+            ty_vec3 p = x->particles[s].x;
+            float reach = x->particles[s].radius + XPBD_MARGIN;
+            for (int w = 0; w < walls; w++)
+                if (xpbd_wall(x, w, p, &n) < reach)
+                    near_push(x, s, w);
+            if (x->lid - p.y < reach)
+                near_push(x, s, XPBD_LID);
+        }
+        couple_push(x, i, XPBD_WALL, first);
+    }
+}
+
+// Both lists ascend in (a, b), their couples and what is in them: bridges are found again in one pass.
+static void bridges_keep(ty_xpbd* x)
+{
+    int old = 0;
+    for (int i = 0; i < x->wall_first; i++)
+    {
+        const couple* c = &x->couples[i];
+        while (old < x->old_couple_count && x->old_couples[old].b >= 0 &&
+               (x->old_couples[old].a < c->a || (x->old_couples[old].a == c->a && x->old_couples[old].b < c->b)))
+            old++;
+        const couple* o = &x->old_couples[old];
+        if (old == x->old_couple_count || o->a != c->a || o->b != c->b)
+            continue;
+        const near *from = x->old_nears + o->first, *end = from + o->count;
+        for (int k = c->first; k < c->first + c->count; k++)
+        {
+            near* to = &x->nears[k];
+            while (from < end && (from->a < to->a || (from->a == to->a && from->b < to->b)))
+                from++;
+            to->wet = from < end && from->a == to->a && from->b == to->b && from->wet;
+        }
+    }
+}
+
+// Greedy, in id order: the lowest colour that neither body has. Walls are the colour after the last.
+static void couples_color(ty_xpbd* x)
+{
+    uint64_t* used = TY_ALLOC(uint64_t, x->body_count);
+    uint8_t* color = TY_ALLOC(uint8_t, x->couple_count);
+    int next[XPBD_COLORS + 2] = {0};
+    for (int i = 0; i < x->couple_count; i++)
+    {
+        const couple* c = &x->couples[i];
+        color[i] = XPBD_COLORS;
+        if (c->b >= 0)
+        {
+            uint64_t open = ~(used[c->a] | used[c->b] | 1ull << (XPBD_COLORS - 1)) & ((1ull << XPBD_COLORS) - 1);
+            color[i] = (uint8_t)(open ? __builtin_ctzll(open) : XPBD_COLORS - 1);
+            used[c->a] |= 1ull << color[i];
+            used[c->b] |= 1ull << color[i];
+        }
+        next[color[i] + 1]++;
+    }
+    for (int c = 0; c <= XPBD_COLORS; c++)
+        next[c + 1] += next[c];
+    memcpy(x->color_first, next, sizeof next);
+    xpbd_reserve((void**)&x->order, &x->order_capacity, x->couple_count, sizeof(int));
+    for (int i = 0; i < x->couple_count; i++)
+        x->order[next[color[i]]++] = i;
+    ty_free(used);
+    ty_free(color);
+}
+
+#define SWAP(type, a, b)                                                                                               \
+    do                                                                                                                 \
+    {                                                                                                                  \
+        type swapped = (a);                                                                                            \
+        (a) = (b);                                                                                                     \
+        (b) = swapped;                                                                                                 \
+    } while (false)
+
+void xpbd_detect(ty_xpbd* x)
+{
+    SWAP(near*, x->nears, x->old_nears);
+    SWAP(int, x->near_capacity, x->old_near_capacity);
+    SWAP(couple*, x->couples, x->old_couples);
+    SWAP(int, x->couple_capacity, x->old_couple_capacity);
+    x->old_couple_count = x->couple_count;
+    x->old_near_count = x->near_count;
+    x->near_count = x->couple_count = 0;
+    grid g = grid_create(x);
+    int neighbours[512];
+    for (int i = 0; i < x->body_count; i++)
+    {
+        int count = grid_neighbours(x, &g, i, neighbours, 512);
+        for (int n = 0; n < count; n++)
+            bodies_near(x, i, neighbours[n]);
+    }
+    ty_free(g.start);
+    ty_free(g.sorted);
+    x->wall_first = x->couple_count;
+    bridges_keep(x);
+    walls_near(x);
+    couples_color(x);
+    x->moved = 0.0f;
+    x->stale = false;
+}
+
+// --- water ---
+
+float ty_bridge_force(float gap, float radius, float tension, float wetting, float volume)
+{
+    float s = gap * sqrtf(radius / volume);
+    return 2.0f * TY_PI * radius * tension * ty_cos(wetting) / (1.0f + 1.05f * s + 2.5f * s * s);
+}
+
+float ty_bridge_rupture(float wetting, float volume)
+{
+    return (1.0f + 0.5f * wetting) * ty_pow(volume, 1.0f / 3.0f);
+}
+
+// --- projection ---
+
+typedef struct contact
+{
+    particle *a, *b; // b NULL = a wall
+    ty_vec3 normal, moved;
+    float gap, weight, compliance;
+} contact;
+
+// Hertz's law as a spring: its secant at a flattening of 2 % of the radius, for two bodies of the same modulus.
+static float contact_compliance(const ty_xpbd* x, float r, float s)
+{
+    const float poisson = 0.4f;
+    float modulus = x->def.modulus / (2.0f * (1.0f - poisson * poisson)), radius = r * s / (r + s);
+    return 0.75f / (modulus * sqrtf(radius * 0.02f * radius));
+}
+
+// The overlap is undone at push_out at most. Returns the multiplier.
+static float normal_solve(const ty_xpbd* x, contact* c)
+{
+    float h = 1.0f / x->def.rate, gamma = c->compliance > 0.0f ? x->def.damping * x->def.rate : 0.0f;
+    float along = ty_dot(c->moved, c->normal), before = c->gap - along;
+    float l = -(c->gap + gamma * along) / ((1.0f + gamma) * c->weight + c->compliance * ty_sqr(x->def.rate));
+    if (before < 0.0f)
+        l = ty_min(l, (ty_max(before + x->def.push_out * h, before) - c->gap) / c->weight);
+    return ty_max(l, 0.0f);
+}
+
+// Cancels the slip since the substep began, as far as friction carries: mu lambda_n, where lambda_n bears the load and
+// the pull of water.
+static void contact_move(const ty_xpbd* x, contact* c, float l)
+{
+    ty_vec3 step = ty_mul(c->normal, l);
+    ty_vec3 slip = ty_mad(c->moved, c->normal, -ty_dot(c->moved, c->normal));
+    float length = ty_length(slip), budget = x->def.friction * l;
+    if (length > 0.0f)
+        step = ty_mad(step, slip, -ty_min(1.0f / c->weight, budget / length));
+    particle_move(c->a, step, c->a->inverse_mass);
+    if (c->b)
+        particle_move(c->b, step, -c->b->inverse_mass);
+}
+
+// A bridge forms at contact, and pulls until it breaks.
+static void bridge_solve(const ty_xpbd* x, contact* c, near* n)
+{
+    float h = 1.0f / x->def.rate, r = c->a->radius, s = c->b->radius;
+    n->wet = c->gap <= 0.0f || (n->wet && c->gap < ty_bridge_rupture(x->def.wetting, x->def.bridge));
+    if (!n->wet)
+        return;
+    float pull =
+        h * h *
+        ty_bridge_force(ty_max(0.0f, c->gap), 2.0f * r * s / (r + s), x->def.tension, x->def.wetting, x->def.bridge);
+    particle_move(c->a, c->normal, -pull * c->a->inverse_mass);
+    particle_move(c->b, c->normal, pull * c->b->inverse_mass);
+    c->gap -= pull * c->weight;
+    c->moved = ty_mad(c->moved, c->normal, -pull * c->weight);
+}
+
+static void near_solve(ty_xpbd* x, near* n)
+{
+    particle *a = &x->particles[n->a], *b = &x->particles[n->b];
+    ty_vec3 d = ty_sub(a->x, b->x);
+    float reach = a->radius + b->radius, square = ty_length_sqr(d);
+    if (square >= reach * reach && !n->wet)
+        return;
+    float length = sqrtf(square);
+    contact c = {.a = a, .b = b, .gap = length - reach, .weight = a->inverse_mass + b->inverse_mass};
+    if (c.weight <= 0.0f)
+        return;
+    c.normal = length > 1e-9f ? ty_mul(d, 1.0f / length) : ty_vec3_make(0.0f, 1.0f, 0.0f);
+    c.compliance = contact_compliance(x, a->radius, b->radius);
+    c.moved = ty_sub(a->shift, b->shift);
+    if (x->def.tension > 0.0f && x->def.bridge > 0.0f)
+        bridge_solve(x, &c, n);
+    if (c.gap < 0.0f)
+        contact_move(x, &c, normal_solve(x, &c));
+}
+
+static void wall_solve(ty_xpbd* x, const near* n)
+{
+    particle* a = &x->particles[n->a];
+    contact c = {.a = a, .weight = a->inverse_mass};
+    c.gap = xpbd_wall(x, n->b, a->x, &c.normal) - a->radius;
+    if (c.gap >= 0.0f || c.weight <= 0.0f)
+        return;
+    c.moved = a->shift;
+    contact_move(x, &c, normal_solve(x, &c));
+}
+
+double xpbd_contacts_energy(const ty_xpbd* x)
+{
+    double sum = 0.0;
+    for (int i = 0; i < x->wall_first; i++)
+        for (int k = x->couples[i].first; k < x->couples[i].first + x->couples[i].count; k++)
+        {
+            const particle *a = &x->particles[x->nears[k].a], *b = &x->particles[x->nears[k].b];
+            float overlap = ty_max(0.0f, a->radius + b->radius - ty_length(ty_sub(a->x, b->x)));
+            sum += 0.5 * (double)(overlap * overlap / contact_compliance(x, a->radius, b->radius));
+        }
+    return sum;
+}
+
+typedef struct sweep
+{
+    ty_xpbd* x;
+    int first;
+} sweep;
+
+static void sweep_range(void* context, int64_t begin, int64_t end, int worker)
+{
+    (void)worker;
+    const sweep* s = context;
+    for (int64_t i = begin; i < end; i++)
+    {
+        const couple* c = &s->x->couples[s->x->order[s->first + i]];
+        for (int k = c->first; k < c->first + c->count; k++)
+            if (c->b >= 0)
+                near_solve(s->x, &s->x->nears[k]);
+            else
+                wall_solve(s->x, &s->x->nears[k]);
+    }
+}
+
+void xpbd_contacts_solve(ty_xpbd* x, ty_workers* workers)
+{
+    enum
+    {
+        WORTH_SHARING = 768, // couples of a colour
+    };
+    for (int c = 0; c <= XPBD_COLORS; c++)
+    {
+        sweep s = {x, x->color_first[c]};
+        int count = x->color_first[c + 1] - s.first;
+        bool share = count >= WORTH_SHARING && c != XPBD_COLORS - 1;
+        if (count > 0)
+            ty_parallel_for(share ? workers : NULL, count, share ? (count + 7) / 8 : count, sweep_range, &s);
+    }
+}
