@@ -27,12 +27,13 @@ static void touch_push(found* f, int a, int b)
     f->touches[f->touch_count++] = (touch){.a = (uint8_t)a, .b = (uint8_t)b};
 }
 
-static void pair_push(found* f, int a, int b, int first)
+static void pair_push(found* f, int a, int b, int first, bool bridged)
 {
     if (f->touch_count == first)
         return;
     pile_reserve((void**)&f->pairs, &f->pair_capacity, f->pair_count + 1, sizeof(pair));
-    f->pairs[f->pair_count++] = (pair){.a = a, .b = b, .first = first, .count = f->touch_count - first};
+    f->pairs[f->pair_count++] =
+        (pair){.a = a, .b = b, .first = first, .count = f->touch_count - first, .bridged = bridged};
 }
 
 // The impulses of a pair's touches that were candidates before; both lists ascend in (a, b).
@@ -130,9 +131,10 @@ static void pairs_find(void* context, int64_t begin, int64_t end, int worker)
             touches_find(pile, f, i, j, 0.5f * (pile->poses[i].reach + pile->poses[j].reach));
             while (old < pile->old_wall_first && (o[old].a < i || (o[old].a == i && o[old].b < j)))
                 old++;
-            if (old < pile->old_wall_first && o[old].a == i && o[old].b == j)
+            bool known = old < pile->old_wall_first && o[old].a == i && o[old].b == j;
+            if (known)
                 impulses_keep(pile, f, first, &o[old]);
-            pair_push(f, i, j, first);
+            pair_push(f, i, j, first, known && o[old].bridged);
         }
     }
     ty_free(near.at);
@@ -168,9 +170,10 @@ static void walls_find(void* context, int64_t begin, int64_t end, int worker)
         body_walls_find(pile, f, i);
         while (old < pile->old_pair_count && pile->old_pairs[old].a < i)
             old++;
-        if (old < pile->old_pair_count && pile->old_pairs[old].a == i)
+        bool known = old < pile->old_pair_count && pile->old_pairs[old].a == i;
+        if (known)
             impulses_keep(pile, f, first, &pile->old_pairs[old]);
-        pair_push(f, i, PILE_WALL, first);
+        pair_push(f, i, PILE_WALL, first, known && pile->old_pairs[old].bridged);
     }
 }
 
@@ -264,7 +267,7 @@ static void pairs_color(ty_pile* pile)
     {
         pair* p = &pile->pairs[pile->order[i]];
         p->slot = slot;
-        slot += p->count;
+        slot += p->count + pile->cohesive;
     }
     pile_reserve((void**)&pile->contacts, &pile->contact_capacity, slot, sizeof(contact));
     ty_free(used);
@@ -338,6 +341,15 @@ static void sweep_range(void* context, int64_t begin, int64_t end, int worker)
         s->fn(s->pile, &s->pile->pairs[s->pile->order[s->first + i]]);
 }
 
+// As they lie in memory.
+static void each_range(void* context, int64_t begin, int64_t end, int worker)
+{
+    (void)worker;
+    const sweep* s = context;
+    for (int64_t i = begin; i < end; i++)
+        s->fn(s->pile, &s->pile->pairs[i]);
+}
+
 void pile_sweep(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn)
 {
     enum
@@ -363,5 +375,5 @@ void pile_each(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn)
     };
     sweep s = {pile, fn, 0};
     bool share = pile->pair_count >= WORTH_SHARING;
-    ty_parallel_for(share ? workers : NULL, pile->pair_count, share ? PIECE : pile->pair_count + 1, sweep_range, &s);
+    ty_parallel_for(share ? workers : NULL, pile->pair_count, share ? PIECE : pile->pair_count + 1, each_range, &s);
 }

@@ -81,7 +81,7 @@ void ty_pile_measure(ty_pile* pile, ty_pile_metrics* out, bool* held)
 {
     pile_refresh_all(pile);
     if (pile_moved(pile))
-        pile_detect(pile, PILE_MARGIN, NULL);
+        pile_detect(pile, pile->margin, NULL);
     support* supports = TY_ALLOC(support, pile->count);
     overlaps o = {0};
     for (int i = 0; i < pile->pair_count; i++)

@@ -5,7 +5,11 @@
 
 ty_pile_def ty_pile_def_default(void)
 {
-    return (ty_pile_def){.gravity = {0.0f, -9.81f, 0.0f}, .friction = 0.5f, .rolling = 0.001f, .rate = 2500.0f};
+    return (ty_pile_def){.gravity = {0.0f, -9.81f, 0.0f},
+                         .friction = 0.5f,
+                         .rolling = 0.001f,
+                         .rate = 2500.0f,
+                         .bridge = ty_bridge_def_default()};
 }
 
 ty_pile* ty_pile_create(const ty_pile_def* def)
@@ -20,6 +24,7 @@ ty_pile* ty_pile_create(const ty_pile_def* def)
         pile->mean_volume += def->grains[i].volume / (float)def->grain_count;
         pile->mean_width += def->grains[i].width / (float)def->grain_count;
     }
+    pile_bridge_init(pile);
     return pile;
 }
 

@@ -10,6 +10,7 @@ enum
     PILE_LID = 31, // wall number of the lid during a fill
 };
 
+#define PILE_TIGHT 0.03e-3f // m, gaps up to here are contacts of the substep
 #define PILE_MARGIN 0.3e-3f // m, least reach of a body for candidates; new ones when a ball moved .45 of its reach
 
 // What the solver needs of a body, one cache line.
@@ -36,8 +37,10 @@ typedef struct pair
 {
     int a, b; // bodies, a < b; b = PILE_WALL
     int first, count;
-    int slot;   // of its contacts
-    int active; // contacts in this substep
+    int slot;     // of its contacts
+    int active;   // contacts in this substep; behind them the pull, if there is one
+    bool bridged; // by liquid, since they touched
+    bool pulled;  // in this substep
 } pair;
 
 typedef struct contact
@@ -64,6 +67,8 @@ struct ty_pile
 {
     ty_pile_def def;
     float mean_volume, mean_width, max_radius;
+    float margin; // m, for candidates of a settling pile: at least as far as a bridge reaches
+    bool cohesive;
     float growth;           // common size factor, below 1 during a fill
     const ty_fill_top* lid; // during a fill
     ty_body* bodies;
@@ -125,6 +130,14 @@ typedef void pile_pair_fn(ty_pile* pile, pair* p);
 void pile_sweep(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn);
 // The same without order, for what writes to the pair alone.
 void pile_each(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn);
+
+// settle.c
+// Gap, normal and arms of a touch; false when its gap is above limit.
+bool pile_contact_place(const ty_pile* pile, const pair* p, const touch* t, float limit, contact* c);
+
+// bridge.c
+void pile_bridge_init(ty_pile* pile);
+void pile_bridge_prepare(ty_pile* pile, pair* p, bool touching); // the pull of a pair, behind its contacts
 
 // polish.c
 void pile_project(ty_pile* pile, ty_workers* workers); // one sweep of position corrections

@@ -120,7 +120,7 @@ void ty_pile_polish(ty_pile* pile, int sweeps, ty_workers* workers)
         if (pile_moved(pile))
         {
             pile_refresh_all(pile);
-            pile_detect(pile, PILE_MARGIN, workers);
+            pile_detect(pile, pile->margin, workers);
         }
         pile_project(pile, workers);
     }

@@ -16,8 +16,8 @@ ty_aggregate_recipe ty_aggregate_recipe_default(void)
                  .sprinkle = 0.06f,
                  .sweeps = 400,
                  .thesis = {.refine = 1.0f, .offset = 0.0f, .remove = 1.0f}},
-        .settle = {pile.friction, pile.rolling, 3.0f, pile.rate, 200},
-        .moisture = {.variation = 0.8f, .drying = 0.4f},
+        .settle = {pile.friction, pile.rolling, 3.0f, pile.rate, 200, 0.0f, 0.0f},
+        .moisture = {.variation = 0.8f, .drying = 0.4f, .wet_basis = 0.62f},
         .seed = {7},
     };
 }
@@ -200,6 +200,9 @@ static const ty_param settle_rows[] = {
     FIELD("max_seconds", TY_PARAM_FLOAT, "s", 0.1, 60, max_seconds, "simulated time after which a pile is not at rest"),
     FIELD("rate", TY_PARAM_FLOAT, "1/s", 1000, 20000, rate, "substeps per second; deep piles want more"),
     FIELD("polish", TY_PARAM_INT, "", 0, 5000, polish, "sweeps that take out what overlap is left"),
+    FIELD("cohesion", TY_PARAM_FLOAT, "N/m", -1, 1, cohesion,
+          "surface tension of the liquid between grains; below 0: water, as much as moisture.wet_basis gives"),
+    FIELD("adhesion", TY_PARAM_FLOAT, "J/m^2", 0, 10, adhesion, "work of adhesion of sticky grains, starch about 0.1"),
 };
 #undef OWNER
 
@@ -216,6 +219,8 @@ static void wetness_set_default(void* def)
 static const ty_param wetness_rows[] = {
     FIELD("variation", TY_PARAM_FLOAT, "", 0, 1, variation, "share of chance in the attribute moisture (-1..1)"),
     FIELD("drying", TY_PARAM_FLOAT, "", 0, 1, drying, "how much drier the grains at the surface are"),
+    FIELD("wet_basis", TY_PARAM_FLOAT, "", 0.05, 1, wet_basis,
+          "water of the mass of wet grains: cooked 0.62; bridges hold them together from 0.35 on, up to 0.76"),
 };
 #undef OWNER
 

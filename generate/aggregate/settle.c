@@ -11,7 +11,7 @@ enum
 #define GRAVITY_RAMP 0.05f  // s
 #define DAMPING_RATIO 10.0f // of a contact
 #define PUSH_OUT 0.1f       // m/s, largest speed at which an overlap is undone
-#define TIGHT 0.03e-3f      // m, gaps up to here are contacts of the substep
+#define TOUCHING 2e-6f      // m, gap at which a bridge of liquid forms
 #define CHECK_TIME 0.02f    // s
 #define QUIET_RMS 0.3e-3f   // m/s
 #define QUIET_MAX 1.7e-3f   // m/s
@@ -49,8 +49,7 @@ static void contact_masses(contact* c, const motion* a, const motion* b)
     c->tangent_mass = 1.0f / (0.5f * (ss + tt) + sqrtf(half * half + st * st));
 }
 
-// Gap, normal and arms of a touch; false when it is too far to act.
-static bool contact_place(const ty_pile* pile, const pair* p, const touch* t, contact* c)
+bool pile_contact_place(const ty_pile* pile, const pair* p, const touch* t, float limit, contact* c)
 {
     const ty_ball* ball = &pile_balls(pile, p->a)[t->a];
     ty_vec3 from = ball->center;
@@ -59,7 +58,7 @@ static bool contact_place(const ty_pile* pile, const pair* p, const touch* t, co
         const ty_ball* other = &pile_balls(pile, p->b)[t->b];
         ty_vec3 d = ty_sub(from, other->center);
         float reach = ball->radius + other->radius, square = ty_length_sqr(d);
-        if (square > ty_sqr(reach + TIGHT))
+        if (square > ty_sqr(reach + limit))
             return false;
         float length = sqrtf(square);
         c->gap = length - reach;
@@ -69,7 +68,7 @@ static bool contact_place(const ty_pile* pile, const pair* p, const touch* t, co
     else
     {
         c->gap = pile_wall(pile, t->b, from, &c->normal) - ball->radius;
-        if (c->gap > TIGHT)
+        if (c->gap > limit)
             return false;
         c->arm_b = ty_vec3_make(0.0f, 0.0f, 0.0f);
     }
@@ -84,25 +83,33 @@ static bool is_still(const ty_pile* pile, int body)
 
 static void pair_prepare(ty_pile* pile, pair* p)
 {
+    bool touching = false;
     p->active = 0;
+    p->pulled = false;
     if (is_still(pile, p->a) && is_still(pile, p->b))
         return; // the impulses stay for when one of them wakes
     for (int i = p->first; i < p->first + p->count; i++)
     {
         touch* t = &pile->touches[i];
         contact* c = &pile->contacts[p->slot + p->active];
-        if (!contact_place(pile, p, t, c))
+        if (!pile_contact_place(pile, p, t, PILE_TIGHT, c))
         {
-            t->normal_impulse = 0.0f;
-            t->tangent_impulse = ty_vec3_make(0.0f, 0.0f, 0.0f);
+            if (t->normal_impulse != 0.0f) // most are none: what is not written stays clean in the cache
+            {
+                t->normal_impulse = 0.0f;
+                t->tangent_impulse = ty_vec3_make(0.0f, 0.0f, 0.0f);
+            }
             continue;
         }
+        touching |= c->gap <= TOUCHING;
         contact_masses(c, &pile->motions[p->a], p->b >= 0 ? &pile->motions[p->b] : NULL);
         c->normal_impulse = t->normal_impulse;
         c->tangent_impulse = ty_mad(t->tangent_impulse, c->normal, -ty_dot(t->tangent_impulse, c->normal));
         c->touch = i;
         p->active++;
     }
+    if (pile->cohesive)
+        pile_bridge_prepare(pile, p, touching);
 }
 
 // --- impulses ---
@@ -122,7 +129,7 @@ static void pair_kick(ty_pile* pile, const pair* p, const contact* c, ty_vec3 im
 
 static void pair_warm_start(ty_pile* pile, pair* p)
 {
-    for (int i = p->slot; i < p->slot + p->active; i++)
+    for (int i = p->slot; i < p->slot + p->active + p->pulled; i++)
     {
         const contact* c = &pile->contacts[i];
         pair_kick(pile, p, c, ty_mad(c->tangent_impulse, c->normal, c->normal_impulse));
@@ -291,7 +298,7 @@ static void for_bodies(ty_pile* pile, ty_workers* workers, ty_range_fn* fn)
 void ty_pile_step(ty_pile* pile, ty_workers* workers)
 {
     if (pile_moved(pile))
-        pile_detect(pile, PILE_MARGIN, workers);
+        pile_detect(pile, pile->margin, workers);
     for_bodies(pile, workers, bodies_accelerate);
     pile_each(pile, workers, pair_prepare);
     pile_sweep(pile, workers, pair_warm_start);

@@ -6,7 +6,7 @@
 
 enum
 {
-    TY_FILL_MOST = 1000000, // grains
+    TY_FILL_MOST = 2000000, // grains
 };
 
 typedef enum ty_fill_start
@@ -53,6 +53,8 @@ typedef struct ty_settle_def
     float max_seconds; // simulated, 0.1..60
     float rate;        // substeps per second, 1000..20000
     int polish;        // sweeps, 0..5000
+    float cohesion;    // N/m, tension of the liquid between grains; < 0: water, as much as moisture.wet_basis gives
+    float adhesion;    // J/m^2, work of adhesion of sticky surfaces, 0..10
 } ty_settle_def;
 
 // The attribute `moisture` is a number in -1..1 a grain, to be scaled by the material.
@@ -60,6 +62,7 @@ typedef struct ty_wetness_def
 {
     float variation; // share of chance, 0..1
     float drying;    // how much drier grains at the surface are, 0..1
+    float wet_basis; // kg of water a kg of wet grains, 0.05..1, for cohesion
 } ty_wetness_def;
 
 typedef struct ty_aggregate_recipe

@@ -4,6 +4,27 @@
 #include <tsuya/generate/container.h>
 #include <tsuya/generate/element.h>
 
+// What pulls grains together. All zero but the density: nothing does.
+typedef struct ty_bridge_def
+{
+    float tension;  // N/m, of the liquid between the grains, >= 0
+    float angle;    // rad, of contact, 0..pi/2
+    float volume;   // of a bridge, of the cube of the smaller ball's radius, 0..0.1
+    float adhesion; // J/m^2, work of adhesion of sticky surfaces (starch), >= 0
+    float density;  // kg/m^3, of the grains: gravity against it, > 0
+} ty_bridge_def;
+
+ty_bridge_def ty_bridge_def_default(void); // dry, cooked rice
+// Of the grains' water, kg of water a kg in all: none up to .35, where all of it is within them; falls to none from
+// three quarters of saturation on, as bridges flow together (Rungjiratananon et al. 2008).
+ty_bridge_def ty_bridge_of_moisture(float wet_basis);
+// N at a gap of two balls with the harmonic mean radius 2 ab / (a + b) and the smaller radius given, metres (Willett
+// et al. 2000), without regard to its rupture at (1 + angle / 2) V^(1/3).
+float ty_bridge_force(const ty_bridge_def* def, float radius, float mean_radius, float gap);
+float ty_bridge_rupture(const ty_bridge_def* def, float radius);
+// Pull-off force of Johnson, Kendall & Roberts 1971, which fades out over the first .03 mm.
+float ty_adhesion_force(const ty_bridge_def* def, float mean_radius, float gap);
+
 typedef struct ty_pile_def
 {
     ty_vec3 gravity;          // m/s^2
@@ -13,6 +34,7 @@ typedef struct ty_pile_def
     const ty_element* grains; // borrowed, must outlive the pile
     int grain_count;
     const ty_container* container; // borrowed; NULL = no walls
+    ty_bridge_def bridge;
 } ty_pile_def;
 
 ty_pile_def ty_pile_def_default(void); // no grains, no walls

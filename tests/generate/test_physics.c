@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pile's mechanics against what can be worked out by hand, with balls of known mass and inertia: impacts, rolling,
+// sliding, energy, bridges of water.
+#include "base/cmocka_all.h"
+#include <string.h>
+#include <tsuya/base/rng.h>
+#include <tsuya/generate/pile.h>
+
+#define RADIUS 1.5e-3f // m
+
+static ty_element balls[2]; // the second has twice the radius
+
+static int group_setup(void** state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++)
+    {
+        float r = RADIUS * (float)(i + 1), inverse = 2.5f / (r * r);
+        balls[i] = (ty_element){.ball_count = 1, .radius = r, .capsule = r, .width = 2.0f * r};
+        balls[i].balls[0].radius = r;
+        balls[i].volume = 4.0f / 3.0f * TY_PI * r * r * r;
+        for (int k = 0; k < 3; k++)
+            balls[i].inverse_inertia[k] = inverse;
+    }
+    return 0;
+}
+
+static ty_pile_def weightless(float friction)
+{
+    ty_pile_def def = ty_pile_def_default();
+    def.grains = balls;
+    def.grain_count = 1;
+    def.gravity = ty_vec3_make(0.0f, 0.0f, 0.0f);
+    def.friction = friction;
+    def.rolling = 0.0f;
+    return def;
+}
+
+static ty_body ball_at(float x, float y, float z)
+{
+    return (ty_body){.position = {x, y, z}, .rotation = ty_quat_identity(), .scale = 1.0f};
+}
+
+static ty_container* floor_make(void)
+{
+    ty_container_def def = ty_container_def_default();
+    def.kind = TY_CONTAINER_BOX;
+    def.shape.size = ty_vec3_make(2.0f, 0.02f, 2.0f);
+    def.shape.rounding = 0.0f;
+    ty_container* box;
+    ty_error error;
+    assert_int_equal(ty_container_create(&def, NULL, &box, &error), TY_OK);
+    return box;
+}
+
+static void steps(ty_pile* pile, int count)
+{
+    for (int i = 0; i < count; i++)
+        ty_pile_step(pile, NULL);
+}
+
+// Head on, without restitution: both go on with the common velocity m1 v1 / (m1 + m2), masses 1 : 8.
+static void test_central_impact(void** state)
+{
+    (void)state;
+    ty_pile_def def = weightless(0.5f);
+    def.grain_count = 2;
+    ty_pile* pile = ty_pile_create(&def);
+    ty_body two[2] = {ball_at(0.0f, 0.0f, 0.0f), ball_at(3.2f * RADIUS, 0.0f, 0.0f)};
+    two[0].velocity.x = 0.3f;
+    two[1].grain = 1;
+    ty_pile_add(pile, two, 2);
+    steps(pile, 100);
+    const ty_body* b = ty_pile_bodies(pile);
+    for (int i = 0; i < 2; i++)
+    {
+        assert_true(fabsf(b[i].velocity.x / (0.3f / 9.0f) - 1.0f) < 1e-3f);
+        assert_true(ty_length(b[i].spin) < 1e-3f);
+    }
+    ty_pile_destroy(pile);
+}
+
+// A ball hits another at 45 degrees: along the normal they part with v_n / 2 each, along the tangent the impulse is
+// mu times that of the normal while it slips, and 1/7 of the mass times v_t (2/7 of the reduced one) when it sticks.
+static void oblique(float friction)
+{
+    ty_pile_def def = weightless(friction);
+    ty_pile* pile = ty_pile_create(&def);
+    ty_body two[2] = {ball_at(0.0f, 0.0f, 0.0f), ball_at(2.05f * RADIUS, 0.0f, 0.0f)};
+    two[0].velocity = ty_vec3_make(0.04f, 0.04f, 0.0f);
+    two[0].position.y = -0.05f * RADIUS; // so that they meet along x, slowly enough to do so in place
+    ty_pile_add(pile, two, 2);
+    steps(pile, 8);
+    const ty_body* b = ty_pile_bodies(pile);
+    float normal = b[1].velocity.x, tangent = b[1].velocity.y, expected = ty_min(friction * 0.02f, 0.04f / 7.0f);
+    assert_true(fabsf(normal / 0.02f - 1.0f) < 0.02f);
+    assert_true(fabsf(tangent / expected - 1.0f) < 0.03f);
+    for (int i = 0; i < 2; i++) // both turn alike: m v_t r / I
+        assert_true(fabsf(b[i].spin.z / (-2.5f * expected / RADIUS) - 1.0f) < 0.03f);
+    ty_pile_destroy(pile);
+}
+
+static void test_oblique_impact(void** state)
+{
+    (void)state;
+    oblique(0.1f);
+    oblique(1.0f);
+}
+
+// Speed after .3 s on a slope, from rest.
+static float slope_speed(float angle, float friction)
+{
+    ty_container* box = floor_make();
+    ty_pile_def def = weightless(friction);
+    def.gravity = ty_vec3_make(9.81f * ty_sin(angle), -9.81f * ty_cos(angle), 0.0f);
+    def.container = box;
+    ty_pile* pile = ty_pile_create(&def);
+    ty_body body = ball_at(0.0f, -0.02f + RADIUS, 0.0f);
+    ty_pile_add(pile, &body, 1);
+    steps(pile, 750);
+    float speed = ty_pile_bodies(pile)->velocity.x;
+    ty_pile_destroy(pile);
+    ty_container_destroy(box);
+    return speed;
+}
+
+// A ball rolls down with 5/7 g sin a as long as tan a <= 7/2 mu, and slips with g (sin a - mu cos a) beyond.
+static void test_rolls_and_slips(void** state)
+{
+    (void)state;
+    const float seconds = 0.3f - 0.025f; // gravity comes on over .05 s
+    float a = 0.4f, rolled = 5.0f / 7.0f * 9.81f * ty_sin(a) * seconds;
+    assert_true(fabsf(slope_speed(a, 0.3f) / rolled - 1.0f) < 0.01f);
+    float mu = 0.05f, slipped = 9.81f * (ty_sin(a) - mu * ty_cos(a)) * seconds;
+    assert_true(fabsf(slope_speed(a, mu) / slipped - 1.0f) < 0.01f);
+}
+
+static double energy(const ty_pile* pile)
+{
+    const ty_body* b = ty_pile_bodies(pile);
+    double sum = 0.0;
+    for (int i = 0; i < ty_pile_count(pile); i++)
+        sum += 0.5 * (double)(ty_length_sqr(b[i].velocity) + 0.4f * RADIUS * RADIUS * ty_length_sqr(b[i].spin));
+    return sum;
+}
+
+// 64 balls fly about and hit each other without walls or weight. The impulses that are kept from the substep before
+// may push a moment too long: no more than that is let through, and none of it adds up.
+static void test_energy_never_grows(void** state)
+{
+    (void)state;
+    ty_pile_def def = weightless(0.5f);
+    ty_pile* pile = ty_pile_create(&def);
+    ty_rng rng = ty_rng_make((ty_seed){2}, 0, 0);
+    for (int i = 0; i < 64; i++)
+    {
+        ty_body b = ball_at((float)(i % 4), (float)(i / 4 % 4), (float)(i / 16));
+        b.position = ty_mul(b.position, 2.3f * RADIUS);
+        for (int k = 0; k < 3; k++)
+            (&b.velocity.x)[k] = 0.2f * ty_element_bell(&rng), (&b.spin.x)[k] = 50.0f * ty_element_bell(&rng);
+        b.velocity = ty_mad(b.velocity, ty_sub(b.position, ty_vec3_make(5e-3f, 5e-3f, 5e-3f)), -30.0f); // inwards
+        ty_pile_add(pile, &b, 1);
+    }
+    ty_vec3 before = ty_pile_momentum(pile);
+    double last = energy(pile), first = last;
+    for (int i = 0; i < 400; i++)
+    {
+        ty_pile_step(pile, NULL);
+        double now = energy(pile);
+        assert_true(now <= last * 1.002);
+        last = now < last ? now : last;
+    }
+    assert_true(last < 0.9 * first); // they did hit each other
+    assert_true(ty_length(ty_sub(ty_pile_momentum(pile), before)) < 1e-4f);
+    ty_pile_destroy(pile);
+}
+
+// --- bridges ---
+
+static ty_bridge_def water(void)
+{
+    ty_bridge_def def = ty_bridge_def_default();
+    def.tension = 0.072f;
+    def.volume = 0.01f;
+    def.angle = 0.3f;
+    return def;
+}
+
+// Willett et al. 2000 written out: at contact, at half a radius' hundredth and at the rupture; and its parameters'
+// sense.
+static void test_force_curve(void** state)
+{
+    (void)state;
+    ty_bridge_def def = water();
+    double top = 2.0 * 3.14159265 * 1.5e-3 * 0.072 * cos(0.3);
+    for (double gap = 0.0; gap < 0.5e-3; gap += 0.05e-3)
+    {
+        double s = gap * sqrt(1.5e-3 / (0.01 * pow(1.5e-3, 3.0)));
+        double expected = top / (1.0 + 1.05 * s + 2.5 * s * s);
+        assert_true(fabs((double)ty_bridge_force(&def, RADIUS, RADIUS, (float)gap) / expected - 1.0) < 1e-4);
+    }
+    assert_true(ty_bridge_force(&def, RADIUS, RADIUS, -1e-4f) == ty_bridge_force(&def, RADIUS, RADIUS, 0.0f));
+    double rupture = 1.15 * cbrt(0.01 * pow(1.5e-3, 3.0));
+    assert_true(fabs((double)ty_bridge_rupture(&def, RADIUS) / rupture - 1.0) < 1e-4);
+    def.adhesion = 0.1f;
+    double pull_off = 0.75 * 3.14159265 * 0.1 * 1.5e-3;
+    assert_true(fabs((double)ty_adhesion_force(&def, RADIUS, 0.0f) / pull_off - 1.0) < 1e-4);
+    assert_true(fabs((double)ty_adhesion_force(&def, RADIUS, 0.015e-3f) / pull_off - 0.5) < 1e-3);
+    assert_true(ty_bridge_of_moisture(0.2f).tension == 0.0f);
+    assert_true(ty_bridge_of_moisture(0.4f).volume < ty_bridge_of_moisture(0.6f).volume);
+    assert_true(ty_bridge_of_moisture(0.72f).tension < 0.5f * ty_bridge_of_moisture(0.6f).tension);
+    assert_true(ty_bridge_of_moisture(0.8f).tension == 0.0f);
+}
+
+// Two balls that touch are torn apart. What is lost of their energy is the force's integral up to the rupture.
+static void test_rupture_takes_its_work(void** state)
+{
+    (void)state;
+    ty_pile_def def = weightless(0.5f);
+    def.bridge = water();
+    def.rate = 20000.0f;
+    ty_pile* pile = ty_pile_create(&def);
+    ty_body two[2] = {ball_at(0.0f, 0.0f, 0.0f), ball_at(2.0f * RADIUS, 0.0f, 0.0f)};
+    const float speed = 0.25f;
+    two[1].velocity.x = speed;
+    ty_pile_add(pile, two, 2);
+    steps(pile, 200);
+    const ty_body* b = ty_pile_bodies(pile);
+    assert_true(b[1].position.x - b[0].position.x > 2.0f * RADIUS + ty_bridge_rupture(&def.bridge, RADIUS));
+    double work = 0.0, rupture = (double)ty_bridge_rupture(&def.bridge, RADIUS), step = rupture / 1000.0;
+    for (int i = 0; i < 1000; i++)
+        work += step * (double)ty_bridge_force(&def.bridge, RADIUS, RADIUS, (float)((i + 0.5) * step));
+    double reduced = 0.5 * (double)(def.bridge.density * balls[0].volume);
+    double left = sqrt((double)(speed * speed) - 2.0 * work / reduced),
+           got = (double)(b[1].velocity.x - b[0].velocity.x);
+    assert_true(left < 0.9 * (double)speed);
+    assert_true(fabs(got / left - 1.0) < 0.02);
+    ty_pile_destroy(pile);
+}
+
+// Balls that have not touched have no bridge, however near they pass.
+static void test_bridge_forms_at_contact(void** state)
+{
+    (void)state;
+    ty_pile_def def = weightless(0.5f);
+    def.bridge = water();
+    ty_pile* pile = ty_pile_create(&def);
+    ty_body two[2] = {ball_at(0.0f, 0.0f, 0.0f), ball_at(2.05f * RADIUS, 0.0f, 0.0f)};
+    ty_pile_add(pile, two, 2);
+    steps(pile, 200);
+    assert_true(ty_pile_bodies(pile)[1].position.x == 2.05f * RADIUS);
+    ty_pile_destroy(pile);
+}
+
+// Turns gravity round under a ball at the floor: it hangs when what pulls is more than its weight.
+static bool hangs(ty_bridge_def bridge)
+{
+    ty_container* box = floor_make();
+    ty_pile_def def = weightless(0.5f);
+    def.bridge = bridge;
+    def.container = box;
+    def.gravity.y = 9.81f;
+    ty_pile* pile = ty_pile_create(&def);
+    ty_body body = ball_at(0.0f, -0.02f + RADIUS, 0.0f);
+    ty_pile_add(pile, &body, 1);
+    steps(pile, 500);
+    bool held = ty_pile_bodies(pile)->position.y < -0.02f + 1.001f * RADIUS;
+    ty_pile_destroy(pile);
+    ty_container_destroy(box);
+    return held;
+}
+
+static void test_a_ball_hangs(void** state)
+{
+    (void)state;
+    ty_bridge_def bridge = water();
+    float weight = 9.81f * bridge.density * balls[0].volume;
+    float each = ty_bridge_force(&bridge, RADIUS, 2.0f * RADIUS, 0.0f) / bridge.tension; // of a wall
+    bridge.tension = 1.02f * weight / each;
+    assert_true(hangs(bridge));
+    bridge.tension = 0.98f * weight / each;
+    assert_false(hangs(bridge));
+    ty_bridge_def starch = ty_bridge_def_default();
+    starch.adhesion = 1.0f;
+    starch.adhesion = 1.02f * weight / ty_adhesion_force(&starch, 2.0f * RADIUS, 0.0f);
+    assert_true(hangs(starch));
+    starch.adhesion *= 0.96f;
+    assert_false(hangs(starch));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_central_impact),
+        cmocka_unit_test(test_oblique_impact),
+        cmocka_unit_test(test_rolls_and_slips),
+        cmocka_unit_test(test_energy_never_grows),
+        cmocka_unit_test(test_force_curve),
+        cmocka_unit_test(test_rupture_takes_its_work),
+        cmocka_unit_test(test_bridge_forms_at_contact),
+        cmocka_unit_test(test_a_ball_hangs),
+    };
+    return cmocka_run_group_tests(tests, group_setup, NULL);
+}
