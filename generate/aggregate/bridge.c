@@ -23,12 +23,12 @@ ty_bridge_def ty_bridge_of_moisture(float wet_basis)
     return def;
 }
 
-float ty_bridge_rupture(const ty_bridge_def* def, float radius)
+float ty_bridge_end(const ty_bridge_def* def, float radius)
 {
     return (1.0f + 0.5f * def->angle) * ty_pow(def->volume, 1.0f / 3.0f) * radius;
 }
 
-float ty_bridge_force(const ty_bridge_def* def, float radius, float mean_radius, float gap)
+float ty_bridge_pull(const ty_bridge_def* def, float radius, float mean_radius, float gap)
 {
     if (def->volume <= 0.0f)
         return 0.0f;
@@ -52,7 +52,7 @@ void pile_bridge_init(ty_pile* pile)
         for (int k = 0; k < pile->def.grains[i].ball_count; k++)
             largest = ty_max(largest, pile->def.grains[i].balls[k].radius);
     if (pile->cohesive)
-        pile->margin = ty_max(PILE_MARGIN, 1.2f * ty_bridge_rupture(def, largest));
+        pile->margin = ty_max(PILE_MARGIN, 1.2f * ty_bridge_end(def, largest));
 }
 
 // The touch of a pair that is nearest, without a bound on its gap.
@@ -79,11 +79,11 @@ void pile_bridge_prepare(ty_pile* pile, pair* p, bool touching)
     const touch* t = &pile->touches[c->touch];
     float a = pile_balls(pile, p->a)[t->a].radius, b = p->b >= 0 ? pile_balls(pile, p->b)[t->b].radius : TY_FLOAT_MAX;
     float radius = ty_min(a, b), mean = 2.0f * a / (1.0f + a / b); // 2 a b / (a + b); of a wall 2 a
-    if (c->gap > ty_bridge_rupture(def, radius))
+    if (c->gap > ty_bridge_end(def, radius))
         p->bridged = false;
     float force = ty_adhesion_force(def, mean, c->gap);
     if (p->bridged)
-        force += ty_bridge_force(def, radius, mean, c->gap);
+        force += ty_bridge_pull(def, radius, mean, c->gap);
     c->normal_impulse = -force / (def->density * pile->mean_volume * pile->def.rate);
     c->tangent_impulse = ty_vec3_make(0.0f, 0.0f, 0.0f);
     p->pulled = force > 0.0f;

@@ -197,11 +197,11 @@ static void test_force_curve(void** state)
     {
         double s = gap * sqrt(1.5e-3 / (0.01 * pow(1.5e-3, 3.0)));
         double expected = top / (1.0 + 1.05 * s + 2.5 * s * s);
-        assert_true(fabs((double)ty_bridge_force(&def, RADIUS, RADIUS, (float)gap) / expected - 1.0) < 1e-4);
+        assert_true(fabs((double)ty_bridge_pull(&def, RADIUS, RADIUS, (float)gap) / expected - 1.0) < 1e-4);
     }
-    assert_true(ty_bridge_force(&def, RADIUS, RADIUS, -1e-4f) == ty_bridge_force(&def, RADIUS, RADIUS, 0.0f));
+    assert_true(ty_bridge_pull(&def, RADIUS, RADIUS, -1e-4f) == ty_bridge_pull(&def, RADIUS, RADIUS, 0.0f));
     double rupture = 1.15 * cbrt(0.01 * pow(1.5e-3, 3.0));
-    assert_true(fabs((double)ty_bridge_rupture(&def, RADIUS) / rupture - 1.0) < 1e-4);
+    assert_true(fabs((double)ty_bridge_end(&def, RADIUS) / rupture - 1.0) < 1e-4);
     def.adhesion = 0.1f;
     double pull_off = 0.75 * 3.14159265 * 0.1 * 1.5e-3;
     assert_true(fabs((double)ty_adhesion_force(&def, RADIUS, 0.0f) / pull_off - 1.0) < 1e-4);
@@ -226,10 +226,10 @@ static void test_rupture_takes_its_work(void** state)
     ty_pile_add(pile, two, 2);
     steps(pile, 200);
     const ty_body* b = ty_pile_bodies(pile);
-    assert_true(b[1].position.x - b[0].position.x > 2.0f * RADIUS + ty_bridge_rupture(&def.bridge, RADIUS));
-    double work = 0.0, rupture = (double)ty_bridge_rupture(&def.bridge, RADIUS), step = rupture / 1000.0;
+    assert_true(b[1].position.x - b[0].position.x > 2.0f * RADIUS + ty_bridge_end(&def.bridge, RADIUS));
+    double work = 0.0, rupture = (double)ty_bridge_end(&def.bridge, RADIUS), step = rupture / 1000.0;
     for (int i = 0; i < 1000; i++)
-        work += step * (double)ty_bridge_force(&def.bridge, RADIUS, RADIUS, (float)((i + 0.5) * step));
+        work += step * (double)ty_bridge_pull(&def.bridge, RADIUS, RADIUS, (float)((i + 0.5) * step));
     double reduced = 0.5 * (double)(def.bridge.density * balls[0].volume);
     double left = sqrt((double)(speed * speed) - 2.0 * work / reduced),
            got = (double)(b[1].velocity.x - b[0].velocity.x);
@@ -275,7 +275,7 @@ static void test_a_ball_hangs(void** state)
     (void)state;
     ty_bridge_def bridge = water();
     float weight = 9.81f * bridge.density * balls[0].volume;
-    float each = ty_bridge_force(&bridge, RADIUS, 2.0f * RADIUS, 0.0f) / bridge.tension; // of a wall
+    float each = ty_bridge_pull(&bridge, RADIUS, 2.0f * RADIUS, 0.0f) / bridge.tension; // of a wall
     bridge.tension = 1.02f * weight / each;
     assert_true(hangs(bridge));
     bridge.tension = 0.98f * weight / each;

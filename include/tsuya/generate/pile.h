@@ -20,8 +20,8 @@ ty_bridge_def ty_bridge_def_default(void); // dry, cooked rice
 ty_bridge_def ty_bridge_of_moisture(float wet_basis);
 // N at a gap of two balls with the harmonic mean radius 2 ab / (a + b) and the smaller radius given, metres (Willett
 // et al. 2000), without regard to its rupture at (1 + angle / 2) V^(1/3).
-float ty_bridge_force(const ty_bridge_def* def, float radius, float mean_radius, float gap);
-float ty_bridge_rupture(const ty_bridge_def* def, float radius);
+float ty_bridge_pull(const ty_bridge_def* def, float radius, float mean_radius, float gap);
+float ty_bridge_end(const ty_bridge_def* def, float radius);
 // Pull-off force of Johnson, Kendall & Roberts 1971, which fades out over the first .03 mm.
 float ty_adhesion_force(const ty_bridge_def* def, float mean_radius, float gap);
 
