@@ -13,6 +13,7 @@ typedef struct kit
     ty_container* container;
     ty_fill_top top;
     ty_pile* pile;
+    ty_affine* frames; // of elastic bodies, [count of the pile]; else NULL
     ty_rng rng;
     int count; // of grains, once filled
     int lost, replaced;
@@ -29,3 +30,6 @@ ty_body kit_body(kit* k, ty_vec3 position, float steepest);
 // make_fill.c
 TY_CHECKED ty_status kit_fill(kit* k, ty_error* error);
 void kit_drop(kit* k, int count); // grains fall onto the pile: in layers over its planned surface, not touching
+
+// xpbd_settle.c: settles or presses the pile as elastic bodies for the recipe's time; k->frames is where they stand.
+TY_CHECKED ty_status kit_soften(kit* k, ty_pile_metrics* metrics, ty_error* error);

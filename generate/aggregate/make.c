@@ -239,6 +239,8 @@ static ty_aggregate* grains_write(kit* k, const ty_body* bodies, uint32_t count)
     {
         const ty_body* b = &bodies[i];
         a->transforms[i] = ty_affine_from_trs(b->position, b->rotation, ty_vec3_make(b->scale, b->scale, b->scale));
+        if (k->frames)
+            a->transforms[i] = k->frames[i];
         a->prototype_index[i] = b->grain;
         a->ids[i] = i;
     }
@@ -297,8 +299,11 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
     status = kit_fill(k, error);
     double filled = ty_time_now();
     ty_pile_metrics metrics = {0};
-    if (status == TY_OK)
+    bool elastic = k->recipe->settle.solver == TY_SOLVER_XPBD;
+    if (status == TY_OK && !elastic)
         status = pile_finish(k, &metrics, error);
+    if (status == TY_OK && (elastic || k->recipe->press.strain > 0.0f))
+        status = kit_soften(k, &metrics, error);
     if (status == TY_OK)
         status = result_write(k, &metrics, out, error);
     if (status != TY_OK)
@@ -329,6 +334,7 @@ ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate**
     k->workers = workers;
     k->rng = ty_rng_make(recipe.seed, 0x626f6479, 0);
     status = kit_make(k, out, error);
+    ty_free(k->frames);
     ty_pile_destroy(k->pile);
     ty_container_destroy(k->container);
     for (int i = 0; i < k->grain_count; i++)

@@ -16,7 +16,8 @@ ty_aggregate_recipe ty_aggregate_recipe_default(void)
                  .sprinkle = 0.06f,
                  .sweeps = 400,
                  .thesis = {.refine = 1.0f, .offset = 0.0f, .remove = 1.0f}},
-        .settle = {pile.friction, pile.rolling, 3.0f, pile.rate, 200, 0.0f, 0.0f},
+        .settle = {pile.friction, pile.rolling, 3.0f, pile.rate, 200, 0.0f, 0.0f, TY_SOLVER_IMPULSE, 3e5f},
+        .press = {.strain = 0.0f, .seconds = 0.6f},
         .moisture = {.variation = 0.8f, .drying = 0.4f, .wet_basis = 0.62f},
         .seed = {7},
     };
@@ -188,6 +189,8 @@ static const ty_param_table fill_table = {"aggregate.fill",    "How many grains,
                                           sizeof(ty_fill_def), fill_set_default,
                                           fill_rows,           TY_PARAM_COUNT(fill_rows)};
 
+static const char* const solvers[] = {"impulse", "xpbd", NULL};
+
 static void settle_set_default(void* def)
 {
     *(ty_settle_def*)def = ty_aggregate_recipe_default().settle;
@@ -203,12 +206,37 @@ static const ty_param settle_rows[] = {
     FIELD("cohesion", TY_PARAM_FLOAT, "N/m", -1, 1, cohesion,
           "surface tension of the liquid between grains; below 0: water, as much as moisture.wet_basis gives"),
     FIELD("adhesion", TY_PARAM_FLOAT, "J/m^2", 0, 10, adhesion, "work of adhesion of sticky grains, starch about 0.1"),
+    {"solver", TY_PARAM_ENUM, "", 0, 0, solvers, NULL, offsetof(OWNER, solver),
+     "impulse: rigid elements that come to rest; xpbd: elastic ones that bend, run for max_seconds, and creep", false},
+    FIELD("modulus", TY_PARAM_FLOAT, "Pa", 1e3, 1e8, modulus, "Young's, of elastic elements: with xpbd, or pressed"),
 };
 #undef OWNER
 
 static const ty_param_table settle_table = {"aggregate.settle",    "How the grains come to rest.",
                                             sizeof(ty_settle_def), settle_set_default,
                                             settle_rows,           TY_PARAM_COUNT(settle_rows)};
+
+static void press_set_default(void* def)
+{
+    *(ty_press_def*)def = ty_aggregate_recipe_default().press;
+}
+
+#define OWNER ty_press_def
+static const ty_param press_rows[] = {
+    FIELD("strain", TY_PARAM_FLOAT, "", 0, 0.5, strain, "how far, of the height; 0 = not at all"),
+    FIELD("seconds", TY_PARAM_FLOAT, "s", 0.05, 10, seconds,
+          "simulated: down over .4 of it, up from .5 to .8, then left"),
+};
+#undef OWNER
+
+static const ty_param_table press_table = {
+    "aggregate.press",
+    "A closed container is squeezed towards its lowest point, into an open one comes a lid; then both open "
+    "again. The elements are elastic in it, and stay bent and sheared as they lie at the end.",
+    sizeof(ty_press_def),
+    press_set_default,
+    press_rows,
+    TY_PARAM_COUNT(press_rows)};
 
 static void wetness_set_default(void* def)
 {
@@ -245,6 +273,7 @@ static const ty_param recipe_rows[] = {
     GROUP(container, &container_table, "what the grains lie in"),
     GROUP(fill, &fill_table, "how many, how dense, how high"),
     GROUP(settle, &settle_table, "how they come to rest"),
+    GROUP(press, &press_table, "a mould that closes on them"),
     GROUP(moisture, &wetness_table, "the attribute moisture"),
     FIELD("seed", TY_PARAM_SEED, "", 0, 0, seed, "one seed, one result"),
 };

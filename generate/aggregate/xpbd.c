@@ -263,10 +263,16 @@ ty_vec3 ty_xpbd_spin(const ty_xpbd* x)
     return sum;
 }
 
-float ty_xpbd_speed_rms(const ty_xpbd* x)
+void ty_xpbd_speeds(const ty_xpbd* x, float* rms, float* largest)
 {
     double sum = 0.0;
+    float most = 0.0f;
     for (int i = 0; i < x->particle_count; i++)
-        sum += (double)ty_length_sqr(x->particles[i].v);
-    return x->particle_count > 0 ? (float)sqrt(sum / x->particle_count) : 0.0f;
+    {
+        float square = ty_length_sqr(x->particles[i].v);
+        sum += (double)square;
+        most = ty_max(most, square);
+    }
+    *rms = x->particle_count > 0 ? (float)sqrt(sum / x->particle_count) : 0.0f;
+    *largest = sqrtf(most);
 }

@@ -3,6 +3,7 @@
 #include "base/cmocka_all.h"
 #include <math.h>
 #include <tsuya/base/hash.h>
+#include <tsuya/generate/aggregate_recipe.h>
 #include <tsuya/generate/xpbd.h>
 
 static ty_xpbd_def free_def(void)
@@ -468,6 +469,68 @@ static void test_frame(void** state)
     ty_element_term(&grain);
 }
 
+// --- from a recipe ---
+
+static ty_aggregate* packed(int solver, float strain, ty_status expected)
+{
+    ty_aggregate_recipe recipe = ty_aggregate_recipe_default();
+    recipe.element.variants = 2;
+    recipe.container.shape.radius = 0.015f;
+    recipe.container.shape.height = 0.015f;
+    recipe.container.shape.thickness = 0.0015f;
+    recipe.container.shape.foot_radius = 0.007f;
+    recipe.container.shape.foot_height = 0.002f;
+    recipe.fill.count = 60;
+    recipe.settle.solver = solver;
+    recipe.settle.rate = 4000.0f;
+    recipe.settle.max_seconds = solver == TY_SOLVER_XPBD ? 0.15f : 3.0f;
+    recipe.press = (ty_press_def){strain, 0.2f};
+    ty_aggregate* made;
+    ty_error error;
+    assert_int_equal(ty_aggregate_make(&recipe, NULL, &made, &error), expected);
+    assert_non_null(made);
+    return made;
+}
+
+// Largest difference of an instance's columns from a rotation with a size.
+static float bent_most(const ty_aggregate* a)
+{
+    float most = 0.0f;
+    for (uint32_t i = 0; i < a->instance_count; i++)
+    {
+        ty_affine t = a->transforms[i];
+        float size = ty_length(t.x);
+        most = ty_max(most, fabsf(ty_length(t.y) / size - 1.0f));
+        most = ty_max(most, fabsf(ty_dot(t.x, t.y)) / (size * size));
+    }
+    return most;
+}
+
+// A rigid pile stays rigid; elastic and pressed ones are bent, a little, and end as not at rest.
+static void test_recipe(void** state)
+{
+    (void)state;
+    ty_aggregate* rigid = packed(TY_SOLVER_IMPULSE, 0.0f, TY_OK);
+    ty_aggregate* soft = packed(TY_SOLVER_XPBD, 0.0f, TY_NOT_AT_REST);
+    ty_aggregate* pressed = packed(TY_SOLVER_IMPULSE, 0.15f, TY_NOT_AT_REST);
+    print_message("bent: %.3g %.3g %.3g\n", (double)bent_most(rigid), (double)bent_most(soft),
+                  (double)bent_most(pressed));
+    assert_true(bent_most(rigid) < 1e-5f);
+    assert_true(bent_most(soft) > 1e-4f && bent_most(soft) < 0.3f);
+    assert_true(bent_most(pressed) > 1e-3f && bent_most(pressed) < 0.4f);
+    assert_int_equal(rigid->instance_count, 60);
+    float top_rigid = -1.0f, top_pressed = -1.0f;
+    for (uint32_t i = 0; i < pressed->instance_count; i++)
+    {
+        top_rigid = ty_max(top_rigid, rigid->transforms[i].t.y);
+        top_pressed = ty_max(top_pressed, pressed->transforms[i].t.y);
+    }
+    assert_true(top_pressed < top_rigid);
+    ty_aggregate_destroy(rigid);
+    ty_aggregate_destroy(soft);
+    ty_aggregate_destroy(pressed);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -476,7 +539,7 @@ int main(void)
         cmocka_unit_test(test_slope),      cmocka_unit_test(test_internal_constraints_conserve),
         cmocka_unit_test(test_volume),     cmocka_unit_test(test_bridge),
         cmocka_unit_test(test_cohesion),   cmocka_unit_test(test_same_bits_and_energy),
-        cmocka_unit_test(test_frame),
+        cmocka_unit_test(test_frame),      cmocka_unit_test(test_recipe),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,6 +46,12 @@ typedef struct ty_fill_def
     ty_thesis_def thesis;
 } ty_fill_def;
 
+typedef enum ty_solver
+{
+    TY_SOLVER_IMPULSE, // rigid elements, impulses kept from substep to substep: comes to rest
+    TY_SOLVER_XPBD,    // elastic elements, positions: bends, and creeps
+} ty_solver;
+
 typedef struct ty_settle_def
 {
     float friction;    // Coulomb, 0..2
@@ -55,7 +61,16 @@ typedef struct ty_settle_def
     int polish;        // sweeps, 0..5000
     float cohesion;    // N/m, tension of the liquid between grains; < 0: water, as much as moisture.wet_basis gives
     float adhesion;    // J/m^2, work of adhesion of sticky surfaces, 0..10
+    int solver;        // ty_solver
+    float modulus;     // Pa, Young's of an elastic element, 1e3..1e8
 } ty_settle_def;
+
+// A mould that closes on the elastic elements by strain and opens again: over .4 of the time down, .1 held, .3 up.
+typedef struct ty_press_def
+{
+    float strain;  // of the height, 0..0.5; 0 = none
+    float seconds; // 0.05..10
+} ty_press_def;
 
 // The attribute `moisture` is a number in -1..1 a grain, to be scaled by the material.
 typedef struct ty_wetness_def
@@ -71,6 +86,7 @@ typedef struct ty_aggregate_recipe
     ty_container_def container;
     ty_fill_def fill;
     ty_settle_def settle;
+    ty_press_def press;
     ty_wetness_def moisture;
     ty_seed seed;
 } ty_aggregate_recipe;

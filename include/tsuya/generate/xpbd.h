@@ -89,10 +89,10 @@ void ty_xpbd_frame(const ty_xpbd* x, int body, ty_body* rigid, ty_affine* frame)
 // J: kinetic and of gravity; with elastic also of springs, shapes, volumes and contacts. What a hit leaves in springs
 // that are stiff against 1/rate^2 counts in full there, though the next substep takes it away.
 double ty_xpbd_energy(const ty_xpbd* x, bool elastic);
-ty_vec3 ty_xpbd_momentum(const ty_xpbd* x);       // kg m/s
-ty_vec3 ty_xpbd_spin(const ty_xpbd* x);           // kg m^2/s, about the origin
-float ty_xpbd_volume(const ty_xpbd* x, int body); // m^3 within the triangles
-float ty_xpbd_speed_rms(const ty_xpbd* x);        // m/s
+ty_vec3 ty_xpbd_momentum(const ty_xpbd* x);                        // kg m/s
+ty_vec3 ty_xpbd_spin(const ty_xpbd* x);                            // kg m^2/s, about the origin
+float ty_xpbd_volume(const ty_xpbd* x, int body);                  // m^3 within the triangles
+void ty_xpbd_speeds(const ty_xpbd* x, float* rms, float* largest); // m/s
 
 // The attraction of two wet balls (Willett et al. 2000, their closed form) at a gap >= 0, N; radius is 2 r s / (r + s).
 float ty_bridge_force(float gap, float radius, float tension, float wetting, float volume);

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// A fill that settles, or a settled pile that is pressed, as elastic bodies; rigid poses and bent frames come back.
+#include "kit.h"
+#include <string.h>
+#include <tsuya/base/log.h>
+#include <tsuya/generate/xpbd.h>
+
+// Share of the press's depth at a share of its time: down, held, up again, and left alone.
+static float press_depth(float t)
+{
+    float s = ty_min(ty_clamp(t / 0.4f, 0.0f, 1.0f), ty_clamp((0.8f - t) / 0.3f, 0.0f, 1.0f));
+    return s * s * (3.0f - 2.0f * s);
+}
+
+static float top_of(const ty_xpbd* x, const kit* k)
+{
+    float top = ty_container_interior(k->container).low.y, reach = 0.5f * k->recipe->element.thickness;
+    for (int i = 0; i < ty_xpbd_particle_count(x); i++)
+        top = ty_max(top, ty_xpbd_position(x, i).y + reach);
+    return top;
+}
+
+// A closed mould is squeezed towards its lowest point; into an open vessel comes a flat lid, from the top of the pile.
+static void press_place(ty_xpbd* x, const kit* k, float top, float t)
+{
+    float depth = k->recipe->press.strain * press_depth(t), low = ty_container_interior(k->container).low.y;
+    if (ty_container_is_open(k->container))
+        ty_xpbd_lid(x, t < 0.8f ? top - depth * (top - low) : TY_FLOAT_MAX);
+    else
+        ty_xpbd_squeeze(x, 1.0f - depth);
+}
+
+static void run(ty_xpbd* x, const kit* k, float seconds, bool press)
+{
+    float top = top_of(x, k);
+    int steps = (int)(seconds * k->recipe->settle.rate);
+    for (int i = 0; i < steps && !ty_cancel_requested(); i++)
+    {
+        if (press)
+            press_place(x, k, top, (float)(i + 1) / (float)steps);
+        ty_xpbd_step(x, k->workers);
+    }
+}
+
+// Poses and frames of what stayed in the container.
+static void frames_take(kit* k, const ty_xpbd* x)
+{
+    int count = ty_pile_count(k->pile), kept = 0;
+    ty_body* bodies = TY_ALLOC(ty_body, count);
+    bool* gone = TY_ALLOC(bool, count);
+    k->frames = TY_ALLOC(ty_affine, count);
+    for (int i = 0; i < count; i++)
+    {
+        ty_xpbd_frame(x, i, &bodies[i], &k->frames[kept]);
+        gone[i] = ty_container_is_open(k->container) && ty_container_lost(k->container, bodies[i].position);
+        kept += !gone[i];
+    }
+    ty_pile_set_bodies(k->pile, bodies);
+    if (kept < count)
+        ty_pile_remove(k->pile, gone);
+    k->lost += count - kept;
+    ty_free(bodies);
+    ty_free(gone);
+}
+
+ty_status kit_soften(kit* k, ty_pile_metrics* metrics, ty_error* error)
+{
+    const ty_settle_def* settle = &k->recipe->settle;
+    const ty_press_def* press = &k->recipe->press;
+    ty_xpbd_def def = ty_xpbd_def_default();
+    def.rate = settle->rate;
+    def.friction = settle->friction;
+    def.modulus = settle->modulus;
+    def.container = k->container;
+    ty_xpbd* x = ty_xpbd_create(&def);
+    for (int i = 0; i < ty_pile_count(k->pile); i++)
+    {
+        const ty_body* body = &ty_pile_bodies(k->pile)[i];
+        ty_xpbd_add_element(x, &k->grains[body->grain], body);
+    }
+    if (settle->solver == TY_SOLVER_XPBD)
+        run(x, k, settle->max_seconds, false);
+    if (press->strain > 0.0f)
+        run(x, k, press->seconds, true);
+    frames_take(k, x);
+    ty_pile_measure(k->pile, metrics, NULL);
+    ty_xpbd_speeds(x, &metrics->speed_rms, &metrics->speed_max);
+    k->rest = metrics->speed_rms < 0.3e-3f && metrics->speed_max < 1.7e-3f; // as of a rigid pile
+    ty_xpbd_destroy(x);
+    if (ty_cancel_requested())
+        return ty_error_set(error, TY_INTERRUPTED, "interrupted while settling");
+    return TY_OK;
+}
