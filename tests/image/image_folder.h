@@ -53,11 +53,10 @@ static inline const char* in_folder(const char* name)
     return path;
 }
 
-// A file of the fixtures, found from where this header was compiled.
+// A file of the fixtures.
 static inline const char* fixture(const char* name)
 {
     static char path[1024];
-    const char* slash = strrchr(__FILE__, '/');
-    snprintf(path, sizeof path, "%.*s/data/%s", slash ? (int)(slash - __FILE__) : 1, slash ? __FILE__ : ".", name);
+    snprintf(path, sizeof path, FIXTURES "/%s", name);
     return path;
 }
