@@ -298,6 +298,7 @@ void pile_detect(ty_pile* pile, float margin, ty_workers* workers)
         pile->poses[i].seen = pile->bodies[i].position;
         pile->poses[i].seen_rotation = pile->bodies[i].rotation;
     }
+    pile_walls_see(pile);
     lists_swap(pile);
     candidates_find(pile, workers);
     pairs_color(pile);
@@ -308,7 +309,7 @@ void pile_detect(ty_pile* pile, float margin, ty_workers* workers)
 // quaternions.
 bool pile_moved(const ty_pile* pile)
 {
-    if (pile->stale)
+    if (pile->stale || pile_walls_moved(pile))
         return true;
     for (int i = 0; i < pile->count; i++)
     {

@@ -174,7 +174,8 @@ static bool clear_of_walls(const ty_pile* pile, ty_vec3 p)
     const ty_container* c = pile->def.container;
     int walls = c ? ty_container_wall_count(c) : 0;
     ty_vec3 n;
-    if (c && p.y < ty_container_interior(c).high.y && !ty_container_holds(c, p))
+    ty_vec3 inside = c ? pile_in_wall(pile, 0, p) : p;
+    if (c && inside.y < ty_container_interior(c).high.y && !ty_container_holds(c, inside))
         return false;
     for (int w = 0; w < walls; w++)
         if (pile_wall(pile, w, p, &n) < pile->mean_width)

@@ -33,7 +33,7 @@ void ty_pile_destroy(ty_pile* pile)
     if (!pile)
         return;
     void* arrays[] = {pile->bodies,  pile->poses,     pile->motions,     pile->balls,    pile->ball_first, pile->pairs,
-                      pile->touches, pile->old_pairs, pile->old_touches, pile->contacts, pile->order};
+                      pile->touches, pile->old_pairs, pile->old_touches, pile->contacts, pile->order,      pile->walls};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         ty_free(arrays[i]);
     ty_free(pile);
@@ -196,24 +196,6 @@ float ty_fill_top_height(const ty_fill_top* top, ty_vec3 p)
     float x = ty_sqr(p.x / top->radius_x), z = ty_sqr(p.z / top->radius_z);
     float share = top->turned ? 1.0f - x - z : ty_max(0.0f, 1.0f - x) * ty_max(0.0f, 1.0f - z);
     return top->level + top->crown * ty_max(0.0f, share);
-}
-
-// The lid's distance to first order, from the height and its slope.
-static float lid_wall(const ty_fill_top* top, ty_vec3 p, ty_vec3* normal)
-{
-    const float d = 1e-4f;
-    float y = ty_fill_top_height(top, p);
-    float sx = (ty_fill_top_height(top, ty_vec3_make(p.x + d, p.y, p.z)) - y) / d;
-    float sz = (ty_fill_top_height(top, ty_vec3_make(p.x, p.y, p.z + d)) - y) / d;
-    ty_vec3 n = {sx, -1.0f, sz};
-    float length = ty_length(n);
-    *normal = ty_mul(n, 1.0f / length);
-    return (y - p.y) / length;
-}
-
-float pile_wall(const ty_pile* pile, int wall, ty_vec3 p, ty_vec3* normal)
-{
-    return wall == PILE_LID ? lid_wall(pile->lid, p, normal) : ty_container_wall(pile->def.container, wall, p, normal);
 }
 
 ty_vec3 ty_pile_momentum(const ty_pile* pile)

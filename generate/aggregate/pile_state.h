@@ -55,6 +55,12 @@ typedef struct contact
     int touch;
 } contact;
 
+typedef struct moving_wall
+{
+    ty_wall_motion now, seen; // seen: when candidates were last found
+    float farthest;           // m, of the bodies from its origin, then
+} moving_wall;
+
 typedef struct pose
 {
     ty_affine frame; // body to world, with the size
@@ -92,9 +98,12 @@ struct ty_pile
     int order_capacity;
     int color_first[PILE_COLORS + 2];
     int color_count;
-    bool stale;     // candidates must be found again
-    bool may_sleep; // bodies at rest are left out while a few still move
-    float time;     // s since the start
+    ty_wall_motion_fn* wall_fn;
+    void* wall_context;
+    moving_wall* walls; // NULL = they stand still
+    bool stale;         // candidates must be found again
+    bool may_sleep;     // bodies at rest are left out while a few still move
+    float time;         // s since the start
     int substeps;
 };
 
@@ -119,6 +128,13 @@ void pile_refresh(ty_pile* pile, int body); // frame, balls and inertia from pos
 void pile_turn(ty_body* body, ty_vec3 rotation_vector);
 float pile_wall(const ty_pile* pile, int wall, ty_vec3 p, ty_vec3* normal);
 void pile_reserve(void** array, int* capacity, int needed, size_t size);
+
+// wall.c
+void pile_walls_place(ty_pile* pile);                                 // where they are at this time
+void pile_walls_see(ty_pile* pile);                                   // candidates are about to be found
+bool pile_walls_moved(const ty_pile* pile);                           // too far for the candidates
+ty_vec3 pile_in_wall(const ty_pile* pile, int wall, ty_vec3 p);       // world to the container's own frame
+ty_vec3 pile_wall_velocity(const ty_pile* pile, int wall, ty_vec3 p); // m/s
 
 // contact.c
 // Candidates within margin, in id order, with kept impulses and colours. Equal bits for any worker count.

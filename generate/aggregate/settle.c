@@ -141,7 +141,10 @@ static ty_vec3 relative_velocity(const ty_pile* pile, const pair* p, const conta
     const motion* a = &pile->motions[p->a];
     ty_vec3 u = ty_add(a->v, ty_cross(a->w, c->arm_a));
     if (p->b < 0)
-        return u;
+    {
+        ty_vec3 at = ty_add(pile->bodies[p->a].position, c->arm_a);
+        return pile->walls ? ty_sub(u, pile_wall_velocity(pile, pile->touches[c->touch].b, at)) : u;
+    }
     const motion* b = &pile->motions[p->b];
     return ty_sub(u, ty_add(b->v, ty_cross(b->w, c->arm_b)));
 }
@@ -276,7 +279,7 @@ static void bodies_roll(void* context, int64_t begin, int64_t end, int worker)
             continue;
         body_roll(pile, m);
         float speed = ty_length(m->v) + ty_length(m->w) * 0.5f * pile->mean_width;
-        m->quiet = speed < SLEEP_SPEED && pile->may_sleep ? (uint16_t)(m->quiet + 1) : 0;
+        m->quiet = speed < SLEEP_SPEED && pile->may_sleep && !pile->walls ? (uint16_t)(m->quiet + 1) : 0;
         if ((float)m->quiet > SLEEP_TIME * pile->def.rate)
             body_sleep(m);
         pile->bodies[i].velocity = m->v;
@@ -297,6 +300,7 @@ static void for_bodies(ty_pile* pile, ty_workers* workers, ty_range_fn* fn)
 
 void ty_pile_step(ty_pile* pile, ty_workers* workers)
 {
+    pile_walls_place(pile);
     if (pile_moved(pile))
         pile_detect(pile, pile->margin, workers);
     for_bodies(pile, workers, bodies_accelerate);
@@ -318,7 +322,7 @@ static int lost_remove(ty_pile* pile)
     int lost = 0;
     for (int i = 0; i < pile->count && pile->def.container; i++)
     {
-        gone[i] = ty_container_lost(pile->def.container, pile->bodies[i].position);
+        gone[i] = ty_container_lost(pile->def.container, pile_in_wall(pile, 0, pile->bodies[i].position));
         lost += gone[i];
     }
     if (lost > 0)

@@ -288,6 +288,83 @@ static void test_a_ball_hangs(void** state)
     assert_false(hangs(starch));
 }
 
+// --- moving walls ---
+
+static ty_wall_motion belt(void* context, int wall, float seconds)
+{
+    (void)wall;
+    const ty_vec3* velocity = context;
+    return (ty_wall_motion){ty_mul(*velocity, seconds), ty_quat_identity(), *velocity, {0.0f, 0.0f, 0.0f}};
+}
+
+// Put on a belt, a ball slips until it rolls, at 2/7 of the belt's speed; on a lift it rises with the floor.
+static void test_belt_and_lift(void** state)
+{
+    (void)state;
+    ty_vec3 velocity = {0.1f, 0.05f, 0.0f};
+    ty_container* box = floor_make();
+    ty_pile_def def = weightless(0.5f);
+    def.gravity.y = -9.81f;
+    def.container = box;
+    ty_pile* pile = ty_pile_create(&def);
+    ty_body body = ball_at(0.0f, -0.02f + RADIUS, 0.0f);
+    ty_pile_add(pile, &body, 1);
+    ty_pile_move_walls(pile, belt, &velocity);
+    steps(pile, 1000);
+    const ty_body* b = ty_pile_bodies(pile);
+    assert_true(fabsf(b->velocity.x / (2.0f / 7.0f * velocity.x) - 1.0f) < 0.02f);
+    assert_true(fabsf(b->velocity.y / velocity.y - 1.0f) < 0.02f);
+    float floor_y = -0.02f + velocity.y * ty_pile_time(pile);
+    assert_true(fabsf(b->position.y - floor_y - RADIUS) < 0.02f * RADIUS);
+    ty_pile_destroy(pile);
+    ty_container_destroy(box);
+}
+
+// A quarter turn about z in a second.
+static ty_wall_motion turning(void* context, int wall, float seconds)
+{
+    (void)context, (void)wall;
+    const ty_vec3 axis = {0.0f, 0.0f, 1.0f};
+    float angle = 0.5f * TY_PI * ty_min(seconds, 1.0f);
+    ty_wall_motion m = {.rotation = ty_quat_axis_angle(axis, angle)};
+    m.spin.z = seconds < 1.0f ? 0.5f * TY_PI : 0.0f;
+    return m;
+}
+
+// Balls in a box that is turned end up on what was its side.
+static void test_turned_box(void** state)
+{
+    (void)state;
+    ty_container_def room = ty_container_def_default();
+    room.kind = TY_CONTAINER_BOX;
+    room.shape.size = ty_vec3_make(0.01f, 0.01f, 0.01f);
+    room.shape.rounding = 0.0f;
+    ty_container* box;
+    ty_error error;
+    assert_int_equal(ty_container_create(&room, NULL, &box, &error), TY_OK);
+    ty_pile_def def = weightless(0.5f);
+    def.gravity.y = -9.81f;
+    def.rolling = 0.02f;
+    def.container = box;
+    ty_pile* pile = ty_pile_create(&def);
+    for (int i = 0; i < 8; i++)
+    {
+        ty_body body = ball_at(4.5e-3f * (float)(i % 2) - 2e-3f, -7e-3f, 4e-3f * (float)(i / 2) - 6e-3f);
+        ty_pile_add(pile, &body, 1);
+    }
+    ty_pile_move_walls(pile, turning, NULL);
+    assert_int_equal(ty_pile_settle(pile, 3.0f, NULL, NULL), TY_PILE_REST);
+    assert_true(ty_pile_time(pile) > 1.0f);
+    int lowest = 0;
+    for (int i = 1; i < 8; i++)
+        if (ty_pile_bodies(pile)[i].position.y < ty_pile_bodies(pile)[lowest].position.y)
+            lowest = i;
+    ty_vec3 p = ty_pile_bodies(pile)[lowest].position;
+    assert_true(fabsf(p.y + 0.01f - RADIUS) < 0.02f * RADIUS);
+    ty_pile_destroy(pile);
+    ty_container_destroy(box);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -299,6 +376,8 @@ int main(void)
         cmocka_unit_test(test_rupture_takes_its_work),
         cmocka_unit_test(test_bridge_forms_at_contact),
         cmocka_unit_test(test_a_ball_hangs),
+        cmocka_unit_test(test_belt_and_lift),
+        cmocka_unit_test(test_turned_box),
     };
     return cmocka_run_group_tests(tests, group_setup, NULL);
 }

@@ -74,6 +74,22 @@ float ty_fill_top_height(const ty_fill_top* top, ty_vec3 p); // of the surface a
 // Fill by inflation: Sakurai & Miyata 2014 in purpose, position projection (Macklin et al. 2014) in means.
 void ty_pile_inflate(ty_pile* pile, const ty_fill_top* top, int sweeps, ty_workers* workers);
 
+// Where a wall of the container is: a turn about the container's origin, then a shift; and how both change.
+typedef struct ty_wall_motion
+{
+    ty_vec3 position; // m
+    ty_quat rotation;
+    ty_vec3 velocity; // m/s, of the container's origin
+    ty_vec3 spin;     // rad/s, about it
+} ty_wall_motion;
+
+// Called for each wall once a substep, with the pile's time. Position and velocity must agree with each other.
+typedef ty_wall_motion ty_wall_motion_fn(void* context, int wall, float seconds);
+// From now on the walls move: nobody sleeps, and contacts take the wall's own velocity into account. NULL = they stand
+// where the container has them. Fill before they move.
+void ty_pile_move_walls(ty_pile* pile, ty_wall_motion_fn* fn, void* context);
+float ty_pile_time(const ty_pile* pile); // s, all substeps so far
+
 // One substep of 1/rate: soft contacts by sequential impulses that are kept from substep to substep, then a sweep
 // without bias ("relax", Catto's soft step), friction, rolling resistance. Equal bits for any worker count.
 void ty_pile_step(ty_pile* pile, ty_workers* workers);
