@@ -26,6 +26,7 @@ typedef struct kit
 // make.c
 // A body of a random element, turned as the recipe allows and at most steepest off the horizontal.
 ty_body kit_body(kit* k, ty_vec3 position, float steepest);
+ty_bridge_def kit_bridge(const ty_aggregate_recipe* r); // the liquid between the grains, or none
 
 // make_fill.c
 TY_CHECKED ty_status kit_fill(kit* k, ty_error* error);

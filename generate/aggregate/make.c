@@ -263,8 +263,7 @@ static ty_status result_write(kit* k, const ty_pile_metrics* metrics, ty_aggrega
     return TY_OK;
 }
 
-// The liquid between the grains, or none.
-static ty_bridge_def bridge_of(const ty_aggregate_recipe* r)
+ty_bridge_def kit_bridge(const ty_aggregate_recipe* r)
 {
     ty_bridge_def wet = ty_bridge_of_moisture(r->moisture.wet_basis);
     if (r->settle.cohesion >= 0.0f)
@@ -290,7 +289,7 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
     def.friction = k->recipe->settle.friction;
     def.rolling = k->recipe->settle.rolling;
     def.rate = k->recipe->settle.rate;
-    def.bridge = bridge_of(k->recipe);
+    def.bridge = kit_bridge(k->recipe);
     def.grains = k->grains;
     def.grain_count = k->grain_count;
     def.container = k->container;

@@ -11,7 +11,8 @@ ty_xpbd_def ty_xpbd_def_default(void)
                          .modulus = 3e5f,
                          .density = 1100.0f,
                          .damping = 4e-4f,
-                         .push_out = 0.1f};
+                         .push_out = 0.1f,
+                         .bridge = ty_bridge_def_default()};
 }
 
 void xpbd_reserve(void** array, int* capacity, int needed, size_t size)
@@ -29,6 +30,8 @@ ty_xpbd* ty_xpbd_create(const ty_xpbd_def* def)
     ty_xpbd* x = TY_ALLOC(ty_xpbd, 1);
     x->def = *def;
     x->stale = true;
+    x->cohesive = (def->bridge.tension > 0.0f && def->bridge.volume > 0.0f) || def->bridge.adhesion > 0.0f;
+    x->margin = XPBD_MARGIN;
     x->squeeze = 1.0f;
     x->lid = TY_FLOAT_MAX;
     return x;
@@ -38,8 +41,8 @@ void ty_xpbd_destroy(ty_xpbd* x)
 {
     if (!x)
         return;
-    void* arrays[] = {x->particles, x->rest,      x->bodies,  x->stretches,   x->bends, x->triangles,
-                      x->nears,     x->old_nears, x->couples, x->old_couples, x->order};
+    void* arrays[] = {x->particles, x->rest,  x->bodies,  x->stretches,   x->bends,
+                      x->triangles, x->nears, x->couples, x->old_couples, x->order};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         ty_free(arrays[i]);
     ty_free(x);
@@ -60,6 +63,8 @@ static void particles_add(ty_xpbd* x, const ty_soft_body* made, const ty_affine*
         *p = (particle){.x = ty_map_point(frame, ball->center), .v = velocity, .radius = ball->radius * scale};
         p->inverse_mass = mass > 0.0f ? 1.0f / mass : 0.0f;
         x->rest[x->particle_count++] = ty_mul(ball->center, scale);
+        if (x->cohesive)
+            x->margin = ty_max(x->margin, 1.2f * ty_bridge_end(&x->def.bridge, p->radius));
         body->mass += mass;
         body->fixed = body->fixed || mass <= 0.0f;
         body->rest_center = ty_mad(body->rest_center, ball->center, mass * scale);

@@ -48,7 +48,7 @@ static int grid_index(const grid* g, const int at[3])
 
 static grid grid_create(const ty_xpbd* x)
 {
-    grid g = {.cell = XPBD_MARGIN};
+    grid g = {.cell = x->margin};
     ty_bounds b = ty_bounds_empty();
     float widest = 0.0f;
     for (int i = 0; i < x->body_count; i++)
@@ -95,7 +95,7 @@ static int grid_neighbours(const ty_xpbd* x, const grid* g, int i, int* out, int
         for (int k = in ? g->start[cell] : 0; in && k < g->start[cell + 1]; k++)
         {
             int j = g->sorted[k], place = count;
-            float reach = body->radius + x->bodies[j].radius + XPBD_MARGIN;
+            float reach = body->radius + x->bodies[j].radius + x->margin;
             if (j <= i || count == limit || ty_length_sqr(ty_sub(body->center, x->bodies[j].center)) > reach * reach)
                 continue;
             for (; place > 0 && out[place - 1] > j; place--)
@@ -118,7 +118,7 @@ static void couple_push(ty_xpbd* x, int a, int b, int first)
     if (x->near_count == first)
         return;
     xpbd_reserve((void**)&x->couples, &x->couple_capacity, x->couple_count + 1, sizeof(couple));
-    x->couples[x->couple_count++] = (couple){a, b, first, x->near_count - first};
+    x->couples[x->couple_count++] = (couple){.a = a, .b = b, .first = first, .count = x->near_count - first};
 }
 
 static void bodies_near(ty_xpbd* x, int i, int j)
@@ -128,10 +128,10 @@ static void bodies_near(ty_xpbd* x, int i, int j)
     for (int s = a->first; s < a->first + a->count; s++)
     {
         const particle *p = &x->particles[s], *q = x->particles;
-        if (ty_length_sqr(ty_sub(p->x, b->center)) > ty_sqr(p->radius + b->radius + XPBD_MARGIN))
+        if (ty_length_sqr(ty_sub(p->x, b->center)) > ty_sqr(p->radius + b->radius + x->margin))
             continue;
         for (int t = b->first; t < b->first + b->count; t++)
-            if (ty_length_sqr(ty_sub(p->x, q[t].x)) < ty_sqr(p->radius + q[t].radius + XPBD_MARGIN))
+            if (ty_length_sqr(ty_sub(p->x, q[t].x)) < ty_sqr(p->radius + q[t].radius + x->margin))
                 near_push(x, s, t);
     }
     couple_push(x, i, j, first);
@@ -147,7 +147,7 @@ static void walls_near(ty_xpbd* x)
         for (int s = x->bodies[i].first; s < x->bodies[i].first + x->bodies[i].count; s++)
         {
             ty_vec3 p = x->particles[s].x;
-            float reach = x->particles[s].radius + XPBD_MARGIN;
+            float reach = x->particles[s].radius + x->margin;
             for (int w = 0; w < walls; w++)
                 if (xpbd_wall(x, w, p, &n) < reach)
                     near_push(x, s, w);
@@ -158,27 +158,20 @@ static void walls_near(ty_xpbd* x)
     }
 }
 
-// Both lists ascend in (a, b), their couples and what is in them: bridges are found again in one pass.
+// Both lists ascend in (a, b): bridges are found again in one pass.
 static void bridges_keep(ty_xpbd* x)
 {
     int old = 0;
     for (int i = 0; i < x->wall_first; i++)
     {
-        const couple* c = &x->couples[i];
+        couple* c = &x->couples[i];
         while (old < x->old_couple_count && x->old_couples[old].b >= 0 &&
                (x->old_couples[old].a < c->a || (x->old_couples[old].a == c->a && x->old_couples[old].b < c->b)))
             old++;
         const couple* o = &x->old_couples[old];
         if (old == x->old_couple_count || o->a != c->a || o->b != c->b)
             continue;
-        const near *from = x->old_nears + o->first, *end = from + o->count;
-        for (int k = c->first; k < c->first + c->count; k++)
-        {
-            near* to = &x->nears[k];
-            while (from < end && (from->a < to->a || (from->a == to->a && from->b < to->b)))
-                from++;
-            to->wet = from < end && from->a == to->a && from->b == to->b && from->wet;
-        }
+        c->wet = o->wet;
     }
 }
 
@@ -221,12 +214,9 @@ static void couples_color(ty_xpbd* x)
 
 void xpbd_detect(ty_xpbd* x)
 {
-    SWAP(near*, x->nears, x->old_nears);
-    SWAP(int, x->near_capacity, x->old_near_capacity);
     SWAP(couple*, x->couples, x->old_couples);
     SWAP(int, x->couple_capacity, x->old_couple_capacity);
     x->old_couple_count = x->couple_count;
-    x->old_near_count = x->near_count;
     x->near_count = x->couple_count = 0;
     grid g = grid_create(x);
     int neighbours[512];
@@ -244,19 +234,6 @@ void xpbd_detect(ty_xpbd* x)
     couples_color(x);
     x->moved = 0.0f;
     x->stale = false;
-}
-
-// --- water ---
-
-float ty_bridge_force(float gap, float radius, float tension, float wetting, float volume)
-{
-    float s = gap * sqrtf(radius / volume);
-    return 2.0f * TY_PI * radius * tension * ty_cos(wetting) / (1.0f + 1.05f * s + 2.5f * s * s);
-}
-
-float ty_bridge_rupture(float wetting, float volume)
-{
-    return (1.0f + 0.5f * wetting) * ty_pow(volume, 1.0f / 3.0f);
 }
 
 // --- projection ---
@@ -301,40 +278,42 @@ static void contact_move(const ty_xpbd* x, contact* c, float l)
         particle_move(c->b, step, -c->b->inverse_mass);
 }
 
-// A bridge forms at contact, and pulls until it breaks.
-static void bridge_solve(const ty_xpbd* x, contact* c, near* n)
-{
-    float h = 1.0f / x->def.rate, r = c->a->radius, s = c->b->radius;
-    n->wet = c->gap <= 0.0f || (n->wet && c->gap < ty_bridge_rupture(x->def.wetting, x->def.bridge));
-    if (!n->wet)
-        return;
-    float pull =
-        h * h *
-        ty_bridge_force(ty_max(0.0f, c->gap), 2.0f * r * s / (r + s), x->def.tension, x->def.wetting, x->def.bridge);
-    particle_move(c->a, c->normal, -pull * c->a->inverse_mass);
-    particle_move(c->b, c->normal, pull * c->b->inverse_mass);
-    c->gap -= pull * c->weight;
-    c->moved = ty_mad(c->moved, c->normal, -pull * c->weight);
-}
-
-static void near_solve(ty_xpbd* x, near* n)
+static void near_solve(ty_xpbd* x, const near* n)
 {
     particle *a = &x->particles[n->a], *b = &x->particles[n->b];
     ty_vec3 d = ty_sub(a->x, b->x);
     float reach = a->radius + b->radius, square = ty_length_sqr(d);
-    if (square >= reach * reach && !n->wet)
+    contact c = {.a = a, .b = b, .weight = a->inverse_mass + b->inverse_mass};
+    if (square >= reach * reach || c.weight <= 0.0f)
         return;
     float length = sqrtf(square);
-    contact c = {.a = a, .b = b, .gap = length - reach, .weight = a->inverse_mass + b->inverse_mass};
-    if (c.weight <= 0.0f)
-        return;
+    c.gap = length - reach;
     c.normal = length > 1e-9f ? ty_mul(d, 1.0f / length) : ty_vec3_make(0.0f, 1.0f, 0.0f);
     c.compliance = contact_compliance(x, a->radius, b->radius);
     c.moved = ty_sub(a->shift, b->shift);
-    if (x->def.tension > 0.0f && x->def.bridge > 0.0f)
-        bridge_solve(x, &c, n);
-    if (c.gap < 0.0f)
-        contact_move(x, &c, normal_solve(x, &c));
+    contact_move(x, &c, normal_solve(x, &c));
+}
+
+// Water and stickiness pull at the nearest balls of two bodies. A bridge forms at contact, and pulls until it breaks.
+static void couple_pull(ty_xpbd* x, couple* c)
+{
+    const ty_bridge_def* def = &x->def.bridge;
+    particle *a = NULL, *b = NULL;
+    float gap = TY_FLOAT_MAX, h = 1.0f / x->def.rate;
+    for (int k = c->first; k < c->first + c->count; k++)
+    {
+        particle *p = &x->particles[x->nears[k].a], *q = &x->particles[x->nears[k].b];
+        float own = ty_length(ty_sub(p->x, q->x)) - p->radius - q->radius;
+        a = own < gap ? p : a;
+        b = own < gap ? q : b;
+        gap = ty_min(gap, own);
+    }
+    float radius = ty_min(a->radius, b->radius), mean = 2.0f * a->radius * b->radius / (a->radius + b->radius);
+    c->wet = def->tension > 0.0f && def->volume > 0.0f && (gap <= 0.0f || c->wet) && gap < ty_bridge_end(def, radius);
+    float force = ty_adhesion_force(def, mean, gap) + (c->wet ? ty_bridge_pull(def, radius, mean, gap) : 0.0f);
+    ty_vec3 n = ty_normalize(ty_sub(a->x, b->x));
+    particle_move(a, n, -force * h * h * a->inverse_mass);
+    particle_move(b, n, force * h * h * b->inverse_mass);
 }
 
 static void wall_solve(ty_xpbd* x, const near* n)
@@ -373,7 +352,9 @@ static void sweep_range(void* context, int64_t begin, int64_t end, int worker)
     const sweep* s = context;
     for (int64_t i = begin; i < end; i++)
     {
-        const couple* c = &s->x->couples[s->x->order[s->first + i]];
+        couple* c = &s->x->couples[s->x->order[s->first + i]];
+        if (c->b >= 0 && s->x->cohesive)
+            couple_pull(s->x, c);
         for (int k = c->first; k < c->first + c->count; k++)
             if (c->b >= 0)
                 near_solve(s->x, &s->x->nears[k]);

@@ -39,13 +39,13 @@ typedef struct soft
 typedef struct near
 {
     int a, b; // particles; b is a wall's number in a wall's pair
-    bool wet; // a bridge of water joins them
 } near;
 
 typedef struct couple
 {
     int a, b; // bodies, a < b; b = XPBD_WALL
     int first, count;
+    bool wet; // a bridge of water joins them
 } couple;
 
 struct ty_xpbd
@@ -62,15 +62,16 @@ struct ty_xpbd
     int bend_count, bend_capacity;
     int (*triangles)[3];
     int triangle_count, triangle_capacity;
-    near *nears, *old_nears;
-    int near_count, near_capacity, old_near_count, old_near_capacity;
+    near* nears;
+    int near_count, near_capacity;
     couple *couples, *old_couples;
     int couple_count, couple_capacity, old_couple_count, old_couple_capacity, wall_first;
     int* order;
     int order_capacity;
     int color_first[XPBD_COLORS + 2];
     float moved; // m, how far particles may have come since candidates were found
-    bool stale;
+    bool stale, cohesive;
+    float margin; // m, gaps up to here are candidates
     float squeeze, lid;
 };
 

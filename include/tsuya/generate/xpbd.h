@@ -48,9 +48,7 @@ typedef struct ty_xpbd_def
     float density;                 // kg/m^3, of elements
     float damping;                 // s: damping is stiffness times this
     float push_out;                // m/s, largest speed at which an overlap is undone
-    float tension;                 // N/m, surface tension of water between grains; 0 = dry
-    float wetting;                 // rad, contact angle of that water
-    float bridge;                  // m^3, volume of a bridge
+    ty_bridge_def bridge;          // what pulls bodies together; its density is not used
     const ty_container* container; // borrowed; NULL = no walls
 } ty_xpbd_def;
 
@@ -93,7 +91,3 @@ ty_vec3 ty_xpbd_momentum(const ty_xpbd* x);                        // kg m/s
 ty_vec3 ty_xpbd_spin(const ty_xpbd* x);                            // kg m^2/s, about the origin
 float ty_xpbd_volume(const ty_xpbd* x, int body);                  // m^3 within the triangles
 void ty_xpbd_speeds(const ty_xpbd* x, float* rms, float* largest); // m/s
-
-// The attraction of two wet balls (Willett et al. 2000, their closed form) at a gap >= 0, N; radius is 2 r s / (r + s).
-float ty_bridge_force(float gap, float radius, float tension, float wetting, float volume);
-float ty_bridge_rupture(float wetting, float volume); // m, the gap at which it breaks
