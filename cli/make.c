@@ -12,14 +12,14 @@ typedef struct product
 {
     const char *command, *kind;
     const char* const* extensions; // up to NULL
-    bool is_sequence;
+    bool is_sequence, is_file;     // both: the output tells
 } product;
 
 static const char *const fill_extensions[] = {"exr", NULL}, *const roots_extensions[] = {"ply", NULL};
 static const product products[] = {
-    {"pack", "aggregate", ty_aggregate_endings, false},
-    {"fill", "fill", fill_extensions, true},
-    {"roots", "roots", roots_extensions, false},
+    {"pack", "aggregate", ty_aggregate_endings, true, true},
+    {"fill", "fill", fill_extensions, true, false},
+    {"roots", "roots", roots_extensions, false, true},
 };
 
 static const product* find_product(const ty_command* command)
@@ -52,7 +52,7 @@ static ty_status check_output(const ty_arguments* arguments, const product* p, c
     ty_status status = ty_output_check_ending(arguments->command, output, p->extensions);
     if (status != TY_OK)
         return status;
-    if (ty_path_is_sequence(output) != p->is_sequence)
+    if (ty_path_is_sequence(output) ? !p->is_sequence : !p->is_file)
         return ty_usage(arguments->command,
                         p->is_sequence ? "the output '%s' needs #### where the number of a frame goes"
                                        : "the output '%s' is one file: it has no #",

@@ -168,12 +168,23 @@ static void sign(char** recipe, char** hash, char* text, const char* key)
     *hash = ty_string_copy(key);
 }
 
+static ty_status write_film(void* context, int frame, ty_aggregate* aggregate, ty_error* error)
+{
+    const frame_writer* writer = context;
+    char path[TY_PATH_MAX];
+    sign(&aggregate->recipe, &aggregate->hash, ty_string_copy(writer->text), writer->key);
+    ty_path_frame(writer->pattern, frame, path);
+    return ty_aggregate_export(path, aggregate, false, error);
+}
+
 ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* output, ty_workers* workers,
                           ty_error* error)
 {
     char* text = ty_recipe_text(recipe);
     frame_writer writer = {output, text, key};
     ty_made made = {.frames = {write_frame, &writer}};
+    if (recipe->generator->product == TY_PRODUCT_AGGREGATE && ty_path_is_sequence(output))
+        made.film = (ty_aggregate_sink){write_film, &writer};
     ty_status status = recipe->generator->make(recipe->def, workers, &made, error), written = TY_OK;
     ty_error write_error = {0};
     if (made.aggregate)

@@ -225,6 +225,11 @@ static char* metrics_write(const kit* k, const ty_pile_metrics* m)
                             (double)k->start_repeat * 100.0, (double)repeat * 100.0);
 }
 
+static ty_affine body_transform(const ty_body* b)
+{
+    return ty_affine_from_trs(b->position, b->rotation, ty_vec3_make(b->scale, b->scale, b->scale));
+}
+
 static ty_aggregate* grains_write(kit* k, const ty_body* bodies, uint32_t count)
 {
     ty_aggregate* a = ty_aggregate_create(count, k->grain_count);
@@ -238,9 +243,7 @@ static ty_aggregate* grains_write(kit* k, const ty_body* bodies, uint32_t count)
     for (uint32_t i = 0; i < count; i++)
     {
         const ty_body* b = &bodies[i];
-        a->transforms[i] = ty_affine_from_trs(b->position, b->rotation, ty_vec3_make(b->scale, b->scale, b->scale));
-        if (k->frames)
-            a->transforms[i] = k->frames[i];
+        a->transforms[i] = k->frames ? k->frames[i] : body_transform(b);
         a->prototype_index[i] = b->grain;
         a->ids[i] = i;
     }
@@ -275,9 +278,8 @@ ty_bridge_def kit_bridge(const ty_aggregate_recipe* r)
     return wet;
 }
 
-static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
+static ty_status pile_make(kit* k, ty_error* error)
 {
-    double start = ty_time_now();
     ty_status status = grains_make(k, error);
     if (status == TY_OK)
         status = ty_container_create(&k->recipe->container, k->workers, &k->container, error);
@@ -294,6 +296,15 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
     def.grain_count = k->grain_count;
     def.container = k->container;
     k->pile = ty_pile_create(&def);
+    return TY_OK;
+}
+
+static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
+{
+    double start = ty_time_now();
+    ty_status status = pile_make(k, error);
+    if (status != TY_OK)
+        return status;
     double prepared = ty_time_now();
     status = kit_fill(k, error);
     double filled = ty_time_now();
@@ -319,9 +330,61 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
     return TY_OK;
 }
 
-ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate** out, ty_error* error)
+// --- a film ---
+
+static ty_status film_show(kit* k, int frame, const ty_aggregate* first, const ty_aggregate_sink* sink, ty_error* error)
 {
-    *out = NULL;
+    ty_pile_metrics metrics;
+    ty_pile_measure(k->pile, &metrics, NULL);
+    ty_aggregate shown = *first; // lends its prototypes, ids and attributes
+    shown.recipe = shown.hash = NULL;
+    shown.metrics = metrics_write(k, &metrics);
+    uint32_t count = (uint32_t)ty_pile_count(k->pile);
+    const ty_body* bodies = ty_pile_bodies(k->pile);
+    shown.transforms = TY_ALLOC(ty_affine, count);
+    for (uint32_t i = 0; i < count; i++)
+        shown.transforms[i] = body_transform(&bodies[i]);
+    ty_status status = sink->put(sink->context, frame, &shown, error);
+    ty_free(shown.transforms);
+    ty_free(shown.metrics);
+    ty_free(shown.recipe);
+    ty_free(shown.hash);
+    return status;
+}
+
+static ty_status film_make(kit* k, const ty_aggregate_sink* sink, ty_error* error)
+{
+    const ty_animate_def* animate = &k->recipe->animate;
+    if (k->recipe->element.kind == TY_ELEMENT_ROE)
+        return ty_error_set(error, TY_BAD_INPUT, "animate.frames: eggs of fish have no film; take other elements");
+    if (k->recipe->settle.solver == TY_SOLVER_XPBD || k->recipe->press.strain > 0.0f)
+        return ty_error_set(error, TY_BAD_INPUT,
+                            "animate.frames: a film shows how rigid grains settle: take solver impulse and no press");
+    ty_status status = pile_make(k, error);
+    if (status == TY_OK)
+        status = kit_fill(k, error);
+    ty_aggregate* first = NULL;
+    ty_pile_metrics metrics = {0};
+    if (status == TY_OK)
+        status = result_write(k, &metrics, &first, error);
+    double rate = (double)k->recipe->settle.rate / (double)animate->fps;
+    int64_t step = 0;
+    for (int frame = 1; frame <= animate->frames && status == TY_OK; frame++)
+    {
+        for (int64_t until = (int64_t)((frame - 1) * rate + 0.5); step < until && !ty_cancel_requested(); step++)
+            ty_pile_step(k->pile, k->workers);
+        status = ty_cancel_requested() ? ty_error_set(error, TY_INTERRUPTED, "interrupted before frame %d", frame)
+                                       : film_show(k, frame, first, sink, error);
+    }
+    ty_aggregate_destroy(first);
+    return status;
+}
+
+// --- both ---
+
+static ty_status recipe_make(const void* def, ty_workers* workers, ty_aggregate** out, const ty_aggregate_sink* sink,
+                             ty_error* error)
+{
     ty_aggregate_recipe recipe = *(const ty_aggregate_recipe*)def;
     ty_status status = recipe.element.kind == TY_ELEMENT_ROE ? ty_roe_complete(&recipe.element, error) : TY_OK;
     if (status == TY_OK)
@@ -332,7 +395,7 @@ ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate**
     k->recipe = &recipe;
     k->workers = workers;
     k->rng = ty_rng_make(recipe.seed, 0x626f6479, 0);
-    status = kit_make(k, out, error);
+    status = sink ? film_make(k, sink, error) : kit_make(k, out, error);
     ty_free(k->frames);
     ty_pile_destroy(k->pile);
     ty_container_destroy(k->container);
@@ -340,4 +403,17 @@ ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate**
         ty_element_term(&k->grains[i]);
     ty_free(k);
     return status;
+}
+
+ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate** out, ty_error* error)
+{
+    *out = NULL;
+    return recipe_make(def, workers, out, NULL, error);
+}
+
+ty_status ty_aggregate_film(const void* def, ty_workers* workers, const ty_aggregate_sink* sink, ty_error* error)
+{
+    if (((const ty_aggregate_recipe*)def)->animate.frames < 1)
+        return ty_error_set(error, TY_BAD_INPUT, "animate.frames is 0: say how many frames the film has");
+    return recipe_make(def, workers, NULL, sink, error);
 }

@@ -19,6 +19,7 @@ ty_aggregate_recipe ty_aggregate_recipe_default(void)
         .settle = {pile.friction, pile.rolling, 3.0f, pile.rate, 200, 0.0f, 0.0f, TY_SOLVER_IMPULSE, 3e5f},
         .press = {.strain = 0.0f, .seconds = 0.6f},
         .moisture = {.variation = 0.8f, .drying = 0.4f, .wet_basis = 0.62f},
+        .animate = {.frames = 0, .fps = 24.0f},
         .seed = {7},
     };
 }
@@ -256,6 +257,22 @@ static const ty_param_table wetness_table = {"aggregate.moisture",   "The attrib
                                              sizeof(ty_wetness_def), wetness_set_default,
                                              wetness_rows,           TY_PARAM_COUNT(wetness_rows)};
 
+static void animate_set_default(void* def)
+{
+    *(ty_animate_def*)def = ty_aggregate_recipe_default().animate;
+}
+
+#define OWNER ty_animate_def
+static const ty_param animate_rows[] = {
+    FIELD("frames", TY_PARAM_INT, "", 0, 10000, frames, "of the film that pack writes to OUT.####.glb; 0 = none"),
+    FIELD("fps", TY_PARAM_FLOAT, "1/s", 1, 1000, fps, "frames per second of simulated time"),
+};
+#undef OWNER
+
+static const ty_param_table animate_table = {"aggregate.animate",    "The pile as it settles, frame by frame.",
+                                             sizeof(ty_animate_def), animate_set_default,
+                                             animate_rows,           TY_PARAM_COUNT(animate_rows)};
+
 // --- the whole ---
 
 static void recipe_set_default(void* def)
@@ -275,6 +292,7 @@ static const ty_param recipe_rows[] = {
     GROUP(settle, &settle_table, "how they come to rest"),
     GROUP(press, &press_table, "a mould that closes on them"),
     GROUP(moisture, &wetness_table, "the attribute moisture"),
+    GROUP(animate, &animate_table, "a film of it"),
     FIELD("seed", TY_PARAM_SEED, "", 0, 0, seed, "one seed, one result"),
 };
 #undef GROUP
@@ -294,6 +312,8 @@ const ty_param_table* ty_aggregate_recipe_params(void)
 
 static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_error* error)
 {
+    if (out->film.put)
+        return ty_aggregate_film(def, workers, &out->film, error);
     return ty_aggregate_make(def, workers, &out->aggregate, error);
 }
 

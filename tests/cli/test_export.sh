@@ -31,6 +31,16 @@ prints 'instances: 14'
 expect 0 "$tsuya" info heap.mesh.glb --recipe
 prints 'variants: 3'
 
+# A film: one file a frame.
+expect 0 "$tsuya" pack heap.yaml -o 'film.##.glb' --set animate.frames=3
+absent film.04.glb
+expect 0 "$tsuya" info film.03.glb
+prints 'instances: 14'
+cmp -s film.01.glb film.03.glb && fail "nothing moves"
+expect 3 "$tsuya" pack heap.yaml -o 'none.##.glb'
+says "animate.frames"
+absent none.01.glb
+
 expect 2 "$tsuya" export heap.glb
 says "give -o"
 expect 2 "$tsuya" export heap.glb -o heap.abc

@@ -80,6 +80,13 @@ typedef struct ty_wetness_def
     float wet_basis; // kg of water a kg of wet grains, 0.05..1, for cohesion
 } ty_wetness_def;
 
+// A film of the pile as it settles: the same bodies in every frame, those that fall over a rim too.
+typedef struct ty_animate_def
+{
+    int frames; // 0 = none, ..10000
+    float fps;  // frames a second of simulated time, 1..1000
+} ty_animate_def;
+
 typedef struct ty_aggregate_recipe
 {
     ty_element_def element;
@@ -88,6 +95,7 @@ typedef struct ty_aggregate_recipe
     ty_settle_def settle;
     ty_press_def press;
     ty_wetness_def moisture;
+    ty_animate_def animate;
     ty_seed seed;
 } ty_aggregate_recipe;
 
@@ -95,4 +103,9 @@ ty_aggregate_recipe ty_aggregate_recipe_default(void); // 2,000 grains of cooked
 const ty_param_table* ty_aggregate_recipe_params(void);
 // def is a ty_aggregate_recipe; on failure *out is NULL, else as ty_generator's make.
 TY_CHECKED ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate** out, ty_error* error);
+// Frame by frame instead: the first is the fill before it moves. recipe.animate.frames is at least 1; nothing is
+// replaced, stirred or polished. The aggregate that put gets is lent; prototypes, ids and the order of the instances
+// are the same in all.
+TY_CHECKED ty_status ty_aggregate_film(const void* def, ty_workers* workers, const ty_aggregate_sink* sink,
+                                       ty_error* error);
 extern const ty_generator ty_aggregate_generator;

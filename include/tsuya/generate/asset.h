@@ -22,12 +22,20 @@ typedef struct ty_frame_sink
     void* context;
 } ty_frame_sink;
 
+// The same for a film of aggregates, in order. put may sign the aggregate; it stays the generator's.
+typedef struct ty_aggregate_sink
+{
+    ty_status (*put)(void* context, int frame, ty_aggregate* aggregate, ty_error* error);
+    void* context;
+} ty_aggregate_sink;
+
 // One of these, by product.
 typedef struct ty_made
 {
     ty_aggregate* aggregate; // made; the caller's
     ty_mesh* mesh;           // the same
     ty_frame_sink frames;    // given by the caller
+    ty_aggregate_sink film;  // given where the caller wants an aggregate as a film; then there is no aggregate
 } ty_made;
 
 // A kind of recipe. The def struct is described by params; scene/ fills it from YAML.
