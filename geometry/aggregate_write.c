@@ -80,16 +80,17 @@ ty_status ty_aggregate_check_content(const ty_aggregate* a, const char* path, ty
 
 const ty_instance_attribute* ty_aggregate_attribute_by_name(const ty_aggregate* a, int k)
 {
+    const ty_instance_attribute* found = NULL;
     for (int i = 0; i < a->attribute_count; i++)
     {
         int before = 0;
         for (int j = 0; j < a->attribute_count; j++)
             before += strcmp(a->attributes[j].name, a->attributes[i].name) < 0;
         if (before == k)
-            return &a->attributes[i];
+            found = &a->attributes[i];
     }
-    TY_ASSERT(!"a name stands twice");
-    return NULL;
+    TY_ASSERT(found); // no name stands twice
+    return found;
 }
 
 uint32_t ty_aggregate_split(const ty_aggregate* a, ty_placement* out)
