@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Containers as sampled distance fields: a half-plane table for turned shapes, a grid for meshes, planes for the box.
+#include "hollow.h"
 #include <string.h>
 #include <tsuya/generate/container.h>
 #include <tsuya/geometry/mesh_file.h>
@@ -25,24 +26,46 @@ struct ty_container
     ty_vec3 origin;
     float step;
     node* nodes;
-    ty_bounds interior;
+    bool* hollow; // [nodes] of a vessel from a mesh
+    ty_bounds interior, outside;
+    float widest;
 };
+
+static bool is_vessel(const ty_container* c)
+{
+    return c->def.kind == TY_CONTAINER_MESH && c->def.role == TY_CONTAINER_VESSEL;
+}
 
 ty_container_def ty_container_def_default(void)
 {
     ty_container_def def = {.kind = TY_CONTAINER_BOWL, .mesh = NULL, .shape = ty_shape_def_default()};
+    def.cut = (ty_cut_def){.radius = 0.02f, .normal = {0.0f, 0.0f, 1.0f}};
     def.shape.kind = TY_SHAPE_BOWL;
     return def;
 }
 
 bool ty_container_is_open(const ty_container* c)
 {
-    return c->def.kind == TY_CONTAINER_BOWL || c->def.kind == TY_CONTAINER_BOX;
+    return c->def.kind == TY_CONTAINER_BOWL || c->def.kind == TY_CONTAINER_BOX || c->def.kind == TY_CONTAINER_GROUND ||
+           is_vessel(c);
 }
 
 bool ty_container_is_turned(const ty_container* c)
 {
     return c->def.kind != TY_CONTAINER_BOX && c->def.kind != TY_CONTAINER_MESH;
+}
+
+bool ty_cut_takes(const ty_cut_def* cut, ty_vec3 p)
+{
+    ty_vec3 d = ty_sub(p, cut->center);
+    if (cut->kind == TY_CUT_SPHERE)
+        return ty_length_sqr(d) < ty_sqr(cut->radius);
+    return cut->kind == TY_CUT_PLANE && ty_dot(d, cut->normal) > 0.0f;
+}
+
+float ty_container_widest(const ty_container* c)
+{
+    return c->widest;
 }
 
 ty_bounds ty_container_interior(const ty_container* c)
@@ -129,12 +152,35 @@ float ty_container_wall(const ty_container* c, int wall, ty_vec3 p, ty_vec3* nor
 {
     if (c->def.kind == TY_CONTAINER_BOX)
         return box_wall(c, wall, p, normal);
+    if (c->def.kind == TY_CONTAINER_GROUND)
+    {
+        *normal = ty_vec3_make(0.0f, 1.0f, 0.0f);
+        return p.y;
+    }
     return ty_container_is_turned(c) ? turned_wall(c, p, normal) : field_lookup(c, p, normal);
+}
+
+// A node about p is one of the hollow; above the rim, one of its last row.
+static bool hollow_holds(const ty_container* c, ty_vec3 p)
+{
+    float f[3], beyond = 0.0f;
+    p.y = ty_min(p.y, c->interior.high.y - c->step);
+    int i = cell_of((p.x - c->origin.x) / c->step, c->size[0], c->step, &f[0], &beyond);
+    int j = cell_of((p.y - c->origin.y) / c->step, c->size[1], c->step, &f[1], &beyond);
+    int k = cell_of((p.z - c->origin.z) / c->step, c->size[2], c->step, &f[2], &beyond);
+    for (int e = 0; e < 8; e++)
+        if (c->hollow[node_at(c, i + (e & 1), j + (e >> 1 & 1), k + (e >> 2)) - c->nodes])
+            return beyond <= 0.0f;
+    return false;
 }
 
 bool ty_container_holds(const ty_container* c, ty_vec3 p)
 {
     ty_vec3 n;
+    if (c->def.kind == TY_CONTAINER_GROUND)
+        return p.y > 0.0f && p.x * p.x + p.z * p.z < ty_sqr(c->def.shape.radius);
+    if (is_vessel(c) && !hollow_holds(c, p))
+        return false;
     if (c->def.kind == TY_CONTAINER_MESH)
         return field_lookup(c, p, &n) > 0.0f;
     return ty_shape_interior_distance(&c->def.shape, p) < 0.0f;
@@ -142,7 +188,12 @@ bool ty_container_holds(const ty_container* c, ty_vec3 p)
 
 bool ty_container_lost(const ty_container* c, ty_vec3 p)
 {
-    return c->def.kind == TY_CONTAINER_BOWL && p.x * p.x + p.z * p.z > ty_sqr(c->def.shape.radius);
+    float rho = p.x * p.x + p.z * p.z;
+    if (is_vessel(c))
+        return p.x < c->outside.low.x || p.x > c->outside.high.x || p.z < c->outside.low.z || p.z > c->outside.high.z;
+    if (c->def.kind == TY_CONTAINER_GROUND) // rolls on where nothing holds it
+        return rho > ty_sqr(6.0f * c->def.shape.radius);
+    return c->def.kind == TY_CONTAINER_BOWL && rho > ty_sqr(c->def.shape.radius);
 }
 
 // --- sampling ---
@@ -159,7 +210,8 @@ static void sample_rows(void* context, int64_t begin, int64_t end, int worker)
     (void)worker;
     const sampling* s = context;
     ty_container* c = s->container;
-    bool solid = c->def.kind == TY_CONTAINER_BOWL; // the mesh is the wall itself, not the space
+    bool solid = c->def.kind == TY_CONTAINER_BOWL || is_vessel(c); // the mesh is the wall itself, not the space
+    float table = is_vessel(c) ? c->outside.low.y : 0.0f;
     for (int64_t row = begin; row < end; row++)
         for (int i = 0; i < c->size[0]; i++)
         {
@@ -169,7 +221,7 @@ static void sample_rows(void* context, int64_t begin, int64_t end, int worker)
             bool found = ty_world_closest(s->world, s->prototype, p, 1e3f, &closest);
             TY_ASSERT(found);
             float gap = ty_world_inside(s->world, s->prototype, p) == solid ? -closest.distance : closest.distance;
-            c->nodes[(size_t)row * (size_t)c->size[0] + (size_t)i].gap = solid ? ty_min(gap, p.y) : gap;
+            c->nodes[(size_t)row * (size_t)c->size[0] + (size_t)i].gap = solid ? ty_min(gap, p.y - table) : gap;
         }
 }
 
@@ -285,10 +337,72 @@ static ty_status mesh_load(const ty_container_def* def, ty_mesh** mesh, ty_error
         return TY_OK;
     ty_mesh_destroy(*mesh);
     *mesh = NULL;
+    if (topology.boundary_edges == 0 && topology.volume < 0.0)
+        return ty_error_set(error, TY_BAD_INPUT,
+                            "container.mesh: %s faces inwards (its volume is %.3g cm^3): turn it over", def->mesh,
+                            topology.volume * 1e6);
     return ty_error_set(
         error, TY_BAD_INPUT,
         "container.mesh: %s is not a closed outward surface (%u open edges, %u with more than two faces)", def->mesh,
         topology.boundary_edges, topology.nonmanifold_edges);
+}
+
+// The hollow of a vessel, from the sampled distances, and what fits in it.
+static ty_status vessel_find(ty_container* c, ty_error* error)
+{
+    size_t nodes = (size_t)c->size[0] * (size_t)c->size[1] * (size_t)c->size[2];
+    bool* empty = TY_TRY_ALLOC(bool, nodes);
+    c->hollow = TY_TRY_ALLOC(bool, nodes);
+    if (!empty || !c->hollow)
+    {
+        ty_free(empty);
+        return ty_error_set(error, TY_NO_MEMORY, "no memory for the hollow of the container");
+    }
+    for (size_t i = 0; i < nodes; i++)
+        empty[i] = c->nodes[i].gap > 0.0f;
+    int rim = ty_hollow_find(empty, c->size, c->hollow);
+    ty_free(empty);
+    if (rim < 0)
+        return ty_error_set(
+            error, TY_BAD_INPUT,
+            "container.mesh: %s holds nothing: with role vessel it is a wall thicker than %.3g mm about a "
+            "hollow that is open at the top",
+            c->def.mesh, (double)c->step * 1e3);
+    c->interior = ty_bounds_empty();
+    for (size_t i = 0; i < nodes; i++)
+        if (c->hollow[i])
+        {
+            size_t x = i % (size_t)c->size[0], y = i / (size_t)c->size[0] % (size_t)c->size[1];
+            ty_vec3 at = {(float)x, (float)y, (float)(i / ((size_t)c->size[0] * (size_t)c->size[1]))};
+            c->interior = ty_bounds_add(c->interior, ty_mad(c->origin, at, c->step));
+        }
+    return TY_OK;
+}
+
+static void widest_find(ty_container* c)
+{
+    ty_vec3 size = ty_sub(c->interior.high, c->interior.low);
+    c->widest = 0.5f * ty_min(size.x, size.z);
+    if (ty_container_is_open(c))
+        return;
+    c->widest = ty_min(c->widest, 0.5f * size.y);
+    if (c->def.kind != TY_CONTAINER_MESH)
+        return;
+    c->widest = 0.0f;
+    for (size_t i = 0; i < (size_t)c->size[0] * (size_t)c->size[1] * (size_t)c->size[2]; i++)
+        c->widest = ty_max(c->widest, c->nodes[i].gap);
+}
+
+static ty_status container_sample(ty_container* c, const ty_mesh* mesh, ty_workers* workers, ty_error* error)
+{
+    c->outside = mesh->bounds;
+    c->interior = c->def.kind == TY_CONTAINER_BOWL ? bowl_interior(&c->def.shape, mesh->bounds) : mesh->bounds;
+    ty_status status = TY_OK;
+    if (c->def.kind != TY_CONTAINER_BOX)
+        status = field_sample(c, mesh, workers, error);
+    if (status == TY_OK && is_vessel(c))
+        status = vessel_find(c, error);
+    return status;
 }
 
 static const int shape_kinds[] = {TY_SHAPE_BOWL, TY_SHAPE_BOX, TY_SHAPE_SPHERE, TY_SHAPE_DOME};
@@ -300,7 +414,13 @@ ty_status ty_container_create(const ty_container_def* def, ty_workers* workers, 
     c->def = *def;
     ty_mesh* mesh = NULL;
     ty_status status;
-    if (def->kind == TY_CONTAINER_MESH)
+    if (def->kind == TY_CONTAINER_GROUND)
+    {
+        float r = def->shape.radius;
+        c->interior = (ty_bounds){{-r, 0.0f, -r}, {r, 0.0f, r}};
+        status = r > 0.0f ? TY_OK : ty_error_set(error, TY_BAD_INPUT, "container.radius: %g; it is above 0", (double)r);
+    }
+    else if (def->kind == TY_CONTAINER_MESH)
         status = mesh_load(def, &mesh, error);
     else
     {
@@ -308,12 +428,10 @@ ty_status ty_container_create(const ty_container_def* def, ty_workers* workers, 
         c->def.shape.divisions = def->shape.divisions > FINE ? def->shape.divisions : FINE;
         status = ty_shape_create(&c->def.shape, &mesh, error);
     }
+    if (status == TY_OK && mesh)
+        status = container_sample(c, mesh, workers, error);
     if (status == TY_OK)
-    {
-        c->interior = def->kind == TY_CONTAINER_BOWL ? bowl_interior(&c->def.shape, mesh->bounds) : mesh->bounds;
-        if (def->kind != TY_CONTAINER_BOX)
-            status = field_sample(c, mesh, workers, error);
-    }
+        widest_find(c);
     ty_mesh_destroy(mesh);
     if (status == TY_OK)
         *out = c;
@@ -327,5 +445,6 @@ void ty_container_destroy(ty_container* c)
     if (!c)
         return;
     ty_free(c->nodes);
+    ty_free(c->hollow);
     ty_free(c);
 }

@@ -33,7 +33,7 @@ static bool space_holds(const space* s, ty_vec3 p)
         if (p.x * p.x + p.z * p.z > ty_sqr(interior.high.x))
             return false;
     }
-    else if (!above && !ty_container_holds(s->container, p))
+    else if ((!above || ty_container_wall_count(s->container) == 1) && !ty_container_holds(s->container, p))
         return false;
     ty_vec3 n;
     for (int w = 0; w < ty_container_wall_count(s->container); w++)

@@ -14,7 +14,7 @@ static bool site_is_free(const ty_container* c, ty_vec3 p, ty_vec3 pitch)
     for (int e = -1; e <= 1; e++)
     {
         ty_vec3 q = {p.x + (float)e * reach, p.y, p.z}, n;
-        if (above) // over the rim, in the column of the hollow
+        if (above && interior.high.y > interior.low.y) // over the rim, in the column of the hollow
             q.y = interior.high.y - 1e-3f * (interior.high.y - interior.low.y);
         if (!ty_container_holds(c, q))
             return false;

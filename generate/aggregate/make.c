@@ -61,7 +61,7 @@ static ty_status container_check(const kit* k, ty_error* error)
 {
     ty_bounds b = ty_container_interior(k->container);
     ty_vec3 size = ty_sub(b.high, b.low);
-    float least = ty_min(size.x, ty_min(size.y, size.z)), most = ty_max(size.x, ty_max(size.y, size.z));
+    float least = 2.0f * ty_container_widest(k->container), most = ty_max(size.x, ty_max(size.y, size.z));
     const ty_element_def* e = &k->recipe->element;
     if (least >= 1.5f * e->width && most >= 1.5f * e->length)
         return TY_OK;
@@ -278,6 +278,26 @@ ty_bridge_def kit_bridge(const ty_aggregate_recipe* r)
     return wet;
 }
 
+// Leaves out what lies in the cut, now that nothing moves any more.
+static ty_status pile_cut(kit* k, ty_error* error)
+{
+    const ty_cut_def* cut = &k->recipe->container.cut;
+    if (cut->kind == TY_CUT_NONE)
+        return TY_OK;
+    int count = ty_pile_count(k->pile), taken = 0;
+    bool* gone = TY_ALLOC(bool, count);
+    for (int i = 0; i < count; i++)
+    {
+        gone[i] = ty_cut_takes(cut, ty_pile_bodies(k->pile)[i].position);
+        taken += gone[i];
+    }
+    ty_pile_remove(k->pile, gone);
+    ty_free(gone);
+    if (taken < count)
+        return TY_OK;
+    return ty_error_set(error, TY_BAD_INPUT, "container.cut: it takes all %d elements away", count);
+}
+
 static ty_status pile_make(kit* k, ty_error* error)
 {
     ty_status status = grains_make(k, error);
@@ -314,6 +334,8 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
         status = pile_finish(k, &metrics, error);
     if (status == TY_OK && (elastic || k->recipe->press.strain > 0.0f))
         status = kit_soften(k, &metrics, error);
+    if (status == TY_OK)
+        status = pile_cut(k, error);
     if (status == TY_OK)
         status = result_write(k, &metrics, out, error);
     if (status != TY_OK)

@@ -96,7 +96,32 @@ const ty_param_table* ty_element_params(void)
 
 // --- container ---
 
-static const char* const container_kinds[] = {"bowl", "box", "sphere", "dome", "mesh", NULL};
+static const char* const container_kinds[] = {"bowl", "box", "sphere", "dome", "mesh", "ground", NULL};
+static const char* const container_roles[] = {"volume", "vessel", NULL};
+static const char* const cut_kinds[] = {"none", "sphere", "plane", NULL};
+
+static void cut_set_default(void* def)
+{
+    *(ty_cut_def*)def = ty_container_def_default().cut;
+}
+
+#define OWNER ty_cut_def
+static const ty_param cut_rows[] = {
+    {"shape", TY_PARAM_ENUM, "", 0, 0, cut_kinds, NULL, offsetof(OWNER, kind),
+     "a sphere takes what is in it, a plane what is beyond it", false},
+    FIELD("center", TY_PARAM_FLOAT3, "m", -1e4, 1e4, center, "of the sphere, or a point of the plane"),
+    FIELD("radius", TY_PARAM_FLOAT, "m", 0, 1e4, radius, "of the sphere"),
+    FIELD("normal", TY_PARAM_FLOAT3, "", -1, 1, normal, "of the plane, towards what is taken"),
+};
+#undef OWNER
+
+static const ty_param_table cut_table = {
+    "aggregate.container.cut",
+    "What is left out after settling, so that one sees into the pile: each element whose centre lies in the cut.",
+    sizeof(ty_cut_def),
+    cut_set_default,
+    cut_rows,
+    TY_PARAM_COUNT(cut_rows)};
 
 static void container_set_default(void* def)
 {
@@ -106,9 +131,13 @@ static void container_set_default(void* def)
 #define OWNER ty_container_def
 static const ty_param container_rows[] = {
     {"shape", TY_PARAM_ENUM, "", 0, 0, container_kinds, NULL, offsetof(OWNER, kind),
-     "bowl and box are open at the top; sphere, dome and mesh are closed", false},
+     "bowl and box are open at the top; sphere and dome are closed; ground is a plane for a heap", false},
     FIELD("mesh", TY_PARAM_PATH, "", 0, 0, mesh, "a closed mesh, with shape mesh"),
-    FIELD("radius", TY_PARAM_FLOAT, "m", 0, 1e4, shape.radius, "of bowl (rim, outside), sphere, dome"),
+    {"role", TY_PARAM_ENUM, "", 0, 0, container_roles, NULL, offsetof(OWNER, role),
+     "of a mesh: the surface of the space that is filled, or of the wall about a hollow open at the top", false},
+    {"cut", TY_PARAM_GROUP, "", 0, 0, NULL, &cut_table, offsetof(OWNER, cut), "what is left out at the end", false},
+    FIELD("radius", TY_PARAM_FLOAT, "m", 0, 1e4, shape.radius,
+          "of bowl (rim, outside), sphere, dome; of the heap's foot on ground, as filled"),
     FIELD("size", TY_PARAM_FLOAT3, "m", 0, 1e4, shape.size, "half extents of the box"),
     FIELD("height", TY_PARAM_FLOAT, "m", 0, 1e4, shape.height, "of bowl and dome"),
     FIELD("thickness", TY_PARAM_FLOAT, "m", 0, 1e4, shape.thickness, "wall of the bowl"),

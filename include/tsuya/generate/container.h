@@ -11,14 +11,39 @@ typedef enum ty_container_kind
     TY_CONTAINER_BOX,    // open at the top; four walls and a floor, higher than any pile
     TY_CONTAINER_SPHERE, // closed
     TY_CONTAINER_DOME,   // closed
-    TY_CONTAINER_MESH,   // closed
+    TY_CONTAINER_MESH,   // a volume, or the wall of a vessel
+    TY_CONTAINER_GROUND, // the plane y = 0 without walls; radius is that of the heap's foot as it is filled
 } ty_container_kind;
+
+typedef enum ty_container_role
+{
+    TY_CONTAINER_VOLUME, // the mesh is the surface of the space to be filled
+    TY_CONTAINER_VESSEL, // the mesh is the surface of a wall, open at the top; its hollow is filled up to the rim
+} ty_container_role;
+
+typedef enum ty_cut_kind
+{
+    TY_CUT_NONE,
+    TY_CUT_SPHERE, // what lies within center and radius
+    TY_CUT_PLANE,  // what lies beyond center, where normal points to
+} ty_cut_kind;
+
+// A part of the pile that is left out once it is at rest, so that one sees into it.
+typedef struct ty_cut_def
+{
+    int kind; // ty_cut_kind
+    ty_vec3 center;
+    float radius; // m
+    ty_vec3 normal;
+} ty_cut_def;
 
 // The fields of shape that apply are those of the scene's shape of the same name, with the same defaults.
 typedef struct ty_container_def
 {
-    int kind;           // ty_container_kind
-    const char* mesh;   // path of a closed mesh, for TY_CONTAINER_MESH
+    int kind;         // ty_container_kind
+    const char* mesh; // path of a closed mesh, for TY_CONTAINER_MESH
+    int role;         // ty_container_role, of a mesh; the others are what they are
+    ty_cut_def cut;
     ty_shape_def shape; // its kind is set from kind
 } ty_container_def;
 
@@ -38,6 +63,8 @@ void ty_container_destroy(ty_container* container); // NULL is allowed
 int ty_container_wall_count(const ty_container* container);
 float ty_container_wall(const ty_container* container, int wall, ty_vec3 p, ty_vec3* normal);
 
+bool ty_cut_takes(const ty_cut_def* cut, ty_vec3 p);      // p lies in the cut
+float ty_container_widest(const ty_container* container); // radius of the widest sphere in it; of an open one, sideways
 bool ty_container_is_open(const ty_container* container);
 bool ty_container_is_turned(const ty_container* container);        // round about the y axis
 ty_bounds ty_container_interior(const ty_container* container);    // of the space to be filled, up to the rim
