@@ -132,18 +132,19 @@ static void test_free_fall(void** state)
     ty_xpbd_destroy(x);
 }
 
-// Two equal balls meet: a damped spring of k = 1 / compliance. Their rebound is exp(-pi zeta / sqrt(1 - zeta^2)), and
-// the overlap at its deepest u sqrt(m / 2 k) without damping.
+// Two equal balls meet: a damped spring of k = 1 / compliance that does not pull. Their rebound is that of Schwager &
+// Poeschel 2007, and the overlap at its deepest u sqrt(m / 2 k) without damping.
 static void test_two_body_impact(void** state)
 {
     (void)state;
     const double mass = 1e-5, radius = 1e-3, speed = 0.05;
-    for (int damped = 0; damped < 2; damped++)
+    const float dampings[3] = {0.0f, 1e-4f, 5e-4f};
+    for (int damped = 0; damped < 3; damped++)
     {
         ty_xpbd_def def = free_def();
         def.rate = 200000.0f;
         def.push_out = 10.0f;
-        def.damping = damped ? 1e-4f : 0.0f;
+        def.damping = dampings[damped];
         ty_xpbd* x = ty_xpbd_create(&def);
         float r = (float)radius;
         ball_add(x, r, (float)mass, ty_vec3_make(-1.02f * r, 0.0f, 0.0f), ty_vec3_make((float)speed, 0.0f, 0.0f));
@@ -156,11 +157,12 @@ static void test_two_body_impact(void** state)
             deepest = gap < -deepest ? -gap : deepest;
         }
         double rebound = (double)(ty_xpbd_velocity(x, 1).x - ty_xpbd_velocity(x, 0).x) / (2.0 * speed);
-        double zeta = (damped ? 1e-4 : 0.0) * sqrt(2.0 * k / mass) / 2.0;
-        double expected = exp(-3.14159265 * zeta / sqrt(1.0 - zeta * zeta));
+        double zeta = (double)dampings[damped] * sqrt(2.0 * k / mass) / 2.0, turn = sqrt(1.0 - zeta * zeta);
+        double end = 3.14159265 - atan2(2.0 * zeta * turn, turn * turn - zeta * zeta);
+        double expected = exp(-zeta / turn * end);
         print_message("zeta %.3f: rebound %.4f, expected %.4f; deepest %.3g of %.3g\n", zeta, rebound, expected,
                       deepest, 2.0 * speed * sqrt(mass / (2.0 * k)));
-        assert_true(fabs(rebound - expected) < 0.04);
+        assert_true(fabs(rebound - expected) < 0.02);
         if (!damped)
             assert_true(fabs(deepest / (2.0 * speed * sqrt(mass / (2.0 * k))) - 1.0) < 0.03);
         assert_true((double)ty_length(ty_xpbd_momentum(x)) < 2e-3 * mass * speed);
@@ -501,22 +503,25 @@ static void test_recipe(void** state)
     (void)state;
     ty_aggregate* rigid = packed(TY_SOLVER_IMPULSE, 0.0f, TY_OK);
     ty_aggregate* soft = packed(TY_SOLVER_XPBD, 0.0f, TY_NOT_AT_REST);
-    ty_aggregate* pressed = packed(TY_SOLVER_IMPULSE, 0.15f, TY_NOT_AT_REST);
+    ty_aggregate* slight = packed(TY_SOLVER_IMPULSE, 0.01f, TY_NOT_AT_REST);
+    ty_aggregate* pressed = packed(TY_SOLVER_IMPULSE, 0.2f, TY_NOT_AT_REST);
     print_message("bent: %.3g %.3g %.3g\n", (double)bent_most(rigid), (double)bent_most(soft),
                   (double)bent_most(pressed));
     assert_true(bent_most(rigid) < 1e-5f);
     assert_true(bent_most(soft) > 1e-4f && bent_most(soft) < 0.3f);
     assert_true(bent_most(pressed) > 1e-3f && bent_most(pressed) < 0.4f);
     assert_int_equal(rigid->instance_count, 60);
-    float top_rigid = -1.0f, top_pressed = -1.0f;
+    float top_slight = -1.0f, top_pressed = -1.0f;
     for (uint32_t i = 0; i < pressed->instance_count; i++)
     {
-        top_rigid = ty_max(top_rigid, rigid->transforms[i].t.y);
+        top_slight = ty_max(top_slight, slight->transforms[i].t.y);
         top_pressed = ty_max(top_pressed, pressed->transforms[i].t.y);
     }
-    assert_true(top_pressed < top_rigid);
+    print_message("top: %.5f, pressed %.5f\n", (double)top_slight, (double)top_pressed);
+    assert_true(top_pressed < top_slight - 0.3e-3f);
     ty_aggregate_destroy(rigid);
     ty_aggregate_destroy(soft);
+    ty_aggregate_destroy(slight);
     ty_aggregate_destroy(pressed);
 }
 
