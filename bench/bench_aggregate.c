@@ -46,7 +46,7 @@ static void grains_make(void)
     ty_error error;
     for (int i = 0; i < VARIANTS; i++)
     {
-        if (ty_rice_init(&def, (ty_seed){7}, i, &grains[i], &error) != TY_OK)
+        if (ty_element_init(&def, (ty_seed){7}, i, &grains[i], &error) != TY_OK)
             die(error.text);
         mean_volume += grains[i].volume / VARIANTS;
     }

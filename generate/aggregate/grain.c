@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rice grain: a box grid wrapped around a blunt ellipsoid and bent, tapered, ridged and dented into a cooked grain.
 #include "balls.h"
+#include "element_kinds.h"
 #include <string.h>
-#include <tsuya/generate/element.h>
 
 // What makes one variant differ from the next.
 typedef struct shape
@@ -17,27 +17,6 @@ typedef struct shape
     ty_vec3 lump_center[3]; // m
     float lump[3];          // m
 } shape;
-
-ty_element_def ty_element_def_default(void)
-{
-    return (ty_element_def){.kind = TY_ELEMENT_RICE,
-                            .length = 7.2e-3f,
-                            .width = 3.0e-3f,
-                            .thickness = 2.5e-3f,
-                            .variation = 0.06f,
-                            .variants = 16,
-                            .notch = 0.15f,
-                            .divisions = 9,
-                            .roe = {.lean = TY_PI / 4.0f, .press = 0.012f}};
-}
-
-float ty_element_bell(ty_rng* rng)
-{
-    float sum = 0.0f;
-    for (int i = 0; i < 4; i++)
-        sum += ty_rng_float(rng);
-    return (sum - 2.0f) * 1.73205081f;
-}
 
 // A point of |x/a|^3 + (y/b)^2 + (z/c)^2 = 1 towards the unit vector u: a round section, blunt but rounded ends.
 static ty_vec3 blunt_ellipsoid(const shape* s, ty_vec3 u)
@@ -238,78 +217,19 @@ static void lattice_triangles(const lattice* g, ty_mesh* mesh)
     TY_ASSERT(count == mesh->triangle_count);
 }
 
-// Volume, centre of mass and inertia per unit mass of the solid, by signed tetrahedra from the origin (Tonon 2004).
-static void mass_properties(const ty_mesh* mesh, double* volume, double center[3], double inertia[6])
-{
-    double v6 = 0.0, first[3] = {0}, second[3][3] = {{0}};
-    for (uint32_t t = 0; t < mesh->triangle_count; t++)
-    {
-        double p[3][3], sum[3];
-        for (int e = 0; e < 3; e++)
-        {
-            ty_vec3 q = mesh->positions[mesh->triangles[t][e]];
-            p[e][0] = (double)q.x, p[e][1] = (double)q.y, p[e][2] = (double)q.z;
-        }
-        double d = p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) -
-                   p[0][1] * (p[1][0] * p[2][2] - p[1][2] * p[2][0]) +
-                   p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
-        v6 += d;
-        for (int i = 0; i < 3; i++)
-        {
-            sum[i] = p[0][i] + p[1][i] + p[2][i];
-            first[i] += d * sum[i] / 4.0;
-        }
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                second[i][j] +=
-                    d * (sum[i] * sum[j] + p[0][i] * p[0][j] + p[1][i] * p[1][j] + p[2][i] * p[2][j]) / 20.0;
-    }
-    *volume = v6 / 6.0;
-    double m[3][3];
-    for (int i = 0; i < 3; i++)
-        center[i] = first[i] / v6;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            m[i][j] = second[i][j] / v6 - center[i] * center[j];
-    inertia[0] = m[1][1] + m[2][2], inertia[1] = m[2][2] + m[0][0], inertia[2] = m[0][0] + m[1][1];
-    inertia[3] = -m[0][1], inertia[4] = -m[0][2], inertia[5] = -m[1][2];
-}
-
-static void symmetric_inverse(const double s[6], float out[6])
-{
-    double xx = s[1] * s[2] - s[5] * s[5], xy = s[4] * s[5] - s[3] * s[2], xz = s[3] * s[5] - s[4] * s[1];
-    double d = s[0] * xx + s[3] * xy + s[4] * xz;
-    out[0] = (float)(xx / d), out[3] = (float)(xy / d), out[4] = (float)(xz / d);
-    out[1] = (float)((s[0] * s[2] - s[4] * s[4]) / d);
-    out[2] = (float)((s[0] * s[1] - s[3] * s[3]) / d);
-    out[5] = (float)((s[3] * s[4] - s[0] * s[5]) / d);
-}
-
-// Moves the centre of mass to the origin; smooth holds the surface without its dent, which the balls are fitted to.
+// smooth holds the surface without its dent, which the balls are fitted to.
 static void grain_finish(ty_element* grain, const shape* s, ty_vec3* smooth)
 {
-    ty_mesh* mesh = grain->mesh;
-    double volume, center[3], inertia[6];
-    mass_properties(mesh, &volume, center, inertia);
-    ty_vec3 shift = {(float)center[0], (float)center[1], (float)center[2]};
-    for (uint32_t i = 0; i < mesh->vertex_count; i++)
-    {
-        mesh->positions[i] = ty_sub(mesh->positions[i], shift);
+    ty_vec3 shift = ty_element_weigh(grain);
+    for (uint32_t i = 0; i < grain->mesh->vertex_count; i++)
         smooth[i] = ty_sub(smooth[i], shift);
-    }
-    grain->volume = (float)volume;
-    symmetric_inverse(inertia, grain->inverse_inertia);
     grain->width = 2.0f * s->b;
-    ty_balls_fit(smooth, mesh->vertex_count, ty_vec3_make(s->a, s->b, s->c), s->bend, grain);
-    grain->radius = 0.0f;
-    for (uint32_t i = 0; i < mesh->vertex_count; i++)
-        grain->radius = ty_max(grain->radius, ty_length(mesh->positions[i]));
-    for (int i = 0; i < grain->ball_count; i++)
-        grain->radius = ty_max(grain->radius, ty_length(grain->balls[i].center) + grain->balls[i].radius);
-    ty_mesh_compute_bounds(mesh);
-    ty_mesh_compute_welds(mesh);
-    ty_mesh_compute_normals(mesh, TY_PI);
-    ty_mesh_compute_curvature(mesh, 2);
+    ty_balls_fit(smooth, grain->mesh->vertex_count, ty_vec3_make(s->a, s->b, s->c), s->bend, grain);
+    ty_element_enclose(grain);
+    ty_mesh_compute_bounds(grain->mesh);
+    ty_mesh_compute_welds(grain->mesh);
+    ty_mesh_compute_normals(grain->mesh, TY_PI);
+    ty_mesh_compute_curvature(grain->mesh, 2);
 }
 
 ty_status ty_rice_init(const ty_element_def* def, ty_seed seed, int variant, ty_element* out, ty_error* error)
@@ -345,10 +265,4 @@ ty_status ty_rice_init(const ty_element_def* def, ty_seed seed, int variant, ty_
     ty_free(smooth);
     ty_free(g.index);
     return status;
-}
-
-void ty_element_term(ty_element* grain)
-{
-    ty_mesh_destroy(grain->mesh);
-    memset(grain, 0, sizeof *grain);
 }

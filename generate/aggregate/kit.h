@@ -2,14 +2,13 @@
 // What the making of an aggregate hands from stage to stage.
 #pragma once
 #include "fill.h"
+#include "mixture.h"
 
 typedef struct kit
 {
     const ty_aggregate_recipe* recipe; // complete
     ty_workers* workers;
-    ty_element grains[TY_ELEMENT_MAX_VARIANTS];
-    int grain_count;
-    float volume; // m^3, of the mean grain
+    mixture mix;
     ty_container* container;
     ty_fill_top top;
     ty_pile* pile;

@@ -2,7 +2,6 @@
 // Makes an aggregate from its recipe: fill, settle, take away what is too much, polish until nothing floats, write
 // down.
 #include "kit.h"
-#include "roe.h"
 #include "start.h"
 #include <string.h>
 #include <tsuya/base/log.h>
@@ -26,11 +25,7 @@ static ty_quat rotation_draw(const ty_fill_def* fill, float steepest, ty_rng* rn
 ty_body kit_body(kit* k, ty_vec3 position, float steepest)
 {
     ty_body body = {.position = position, .rotation = rotation_draw(&k->recipe->fill, steepest, &k->rng)};
-    const ty_element_def* element = &k->recipe->element; // meshes of grains differ in size already
-    float spread = element->kind == TY_ELEMENT_RICE ? 0.3f : 1.0f,
-          most = element->kind == TY_ELEMENT_RICE ? 0.1f : 0.3f;
-    body.scale = 1.0f + ty_clamp(spread * element->variation * ty_element_bell(&k->rng), -most, most);
-    body.grain = ty_rng_u32(&k->rng) % (uint32_t)k->grain_count;
+    mixture_draw(&k->mix, &k->rng, &body);
     return body;
 }
 
@@ -38,18 +33,6 @@ ty_body kit_body(kit* k, ty_vec3 position, float steepest)
 
 static ty_status recipe_check(const ty_aggregate_recipe* r, ty_error* error)
 {
-    const ty_element_def* e = &r->element;
-    if (!(e->width > 0.0f && e->length >= e->width && e->length <= 12.0f * e->width))
-        return ty_error_set(error, TY_BAD_INPUT, "element.length: %g mm; with a width of %g mm it lies in %g..%g",
-                            (double)e->length * 1e3, (double)e->width * 1e3, (double)e->width * 1e3,
-                            (double)e->width * 12e3);
-    if (!(e->thickness >= 0.5f * e->width && e->thickness <= e->width))
-        return ty_error_set(error, TY_BAD_INPUT, "element.thickness: %g mm; with a width of %g mm it lies in %g..%g",
-                            (double)e->thickness * 1e3, (double)e->width * 1e3, (double)e->width * 500.0,
-                            (double)e->width * 1e3);
-    if (e->variants < 1 || e->variants > TY_ELEMENT_MAX_VARIANTS)
-        return ty_error_set(error, TY_BAD_INPUT, "element.variants: %d; it lies in 1..%d", e->variants,
-                            TY_ELEMENT_MAX_VARIANTS);
     if (r->fill.count < 1 || r->fill.count > TY_FILL_MOST)
         return ty_error_set(error, TY_BAD_INPUT, "fill.count: %d; it lies in 1..%d", r->fill.count, TY_FILL_MOST);
     if (!(r->fill.density >= 0.1f && r->fill.density <= 0.95f))
@@ -62,33 +45,15 @@ static ty_status container_check(const kit* k, ty_error* error)
     ty_bounds b = ty_container_interior(k->container);
     ty_vec3 size = ty_sub(b.high, b.low);
     float least = 2.0f * ty_container_widest(k->container), most = ty_max(size.x, ty_max(size.y, size.z));
-    const ty_element_def* e = &k->recipe->element;
-    if (least >= 1.5f * e->width && most >= 1.5f * e->length)
+    float width = k->mix.widest, length = k->mix.longest;
+    if (least >= 1.5f * width && most >= 1.5f * length)
         return TY_OK;
     return ty_error_set(
         error, TY_BAD_INPUT,
         "container: its inside is %.3g x %.3g x %.3g mm; grains of %.3g x %.3g mm need at least %.3g by "
         "%.3g mm",
-        (double)size.x * 1e3, (double)size.y * 1e3, (double)size.z * 1e3, (double)e->length * 1e3,
-        (double)e->width * 1e3, (double)e->length * 1.5e3, (double)e->width * 1.5e3);
-}
-
-// --- fill ---
-
-static ty_status grains_make(kit* k, ty_error* error)
-{
-    for (; k->grain_count < k->recipe->element.variants; k->grain_count++)
-    {
-        ty_element* grain = &k->grains[k->grain_count];
-        const ty_element_def* element = &k->recipe->element;
-        ty_status status = element->kind == TY_ELEMENT_ROE
-                               ? ty_roe_init(element, grain, error)
-                               : ty_rice_init(element, k->recipe->seed, k->grain_count, grain, error);
-        if (status != TY_OK)
-            return status;
-        k->volume += grain->volume / (float)k->recipe->element.variants;
-    }
-    return TY_OK;
+        (double)size.x * 1e3, (double)size.y * 1e3, (double)size.z * 1e3, (double)length * 1e3, (double)width * 1e3,
+        (double)length * 1.5e3, (double)width * 1.5e3);
 }
 
 // --- adjust ---
@@ -119,7 +84,7 @@ static ty_status pile_rest(kit* k, ty_error* error)
 // A push of about the speed of a fall through its width, for grains that are wedged where none can be dropped.
 static void floating_stir(kit* k, ty_body* bodies, const bool* held)
 {
-    float speed = sqrtf(2.0f * 9.81f * k->recipe->element.width);
+    float speed = sqrtf(2.0f * 9.81f * k->mix.width);
     for (int i = 0; i < ty_pile_count(k->pile); i++)
     {
         ty_vec3 push;
@@ -182,7 +147,7 @@ static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
 // --- the result ---
 
 // Chance and drying in one number: mean about 0, within -1..1, less at the surface.
-static void attributes_write(const kit* k, ty_aggregate* out)
+static void attributes_write(const kit* k, const uint32_t* owners, ty_aggregate* out)
 {
     float* moisture = ty_aggregate_add_attribute(out, "moisture");
     float* tint = ty_aggregate_add_attribute(out, "tint");
@@ -193,23 +158,23 @@ static void attributes_write(const kit* k, ty_aggregate* out)
     for (uint32_t i = 0; i < count; i++)
     {
         ty_rng rng = ty_rng_make(k->recipe->seed, 0x6d6f6973, i);
-        float exposed = ty_exp(-depth[i] / k->recipe->element.length);
+        float exposed = ty_exp(-depth[i] / k->mix.length);
         float m = 0.45f * wet->variation * ty_element_bell(&rng) + wet->drying * (0.35f - exposed);
         moisture[i] = ty_clamp(m, -1.0f, 1.0f);
         tint[i] = ty_clamp(0.5f * ty_element_bell(&rng), -1.0f, 1.0f);
     }
     for (uint32_t i = count; i < out->instance_count; i++) // further bodies of the same elements
     {
-        moisture[i] = moisture[i - count];
-        tint[i] = tint[i - count];
-        depth[i] = depth[i - count];
+        moisture[i] = moisture[owners[i]];
+        tint[i] = tint[owners[i]];
+        depth[i] = depth[owners[i]];
     }
 }
 
 static char* metrics_write(const kit* k, const ty_pile_metrics* m)
 {
     static const char* const starts[] = {"inflate", "thesis", "lattice"};
-    float repeat = ty_pile_repeat(ty_pile_bodies(k->pile), ty_pile_count(k->pile), k->recipe->element.width);
+    float repeat = ty_pile_repeat(ty_pile_bodies(k->pile), ty_pile_count(k->pile), k->mix.width);
     return ty_string_format("{\"count\": %d, \"phi\": %.4f, \"contacts\": %.3f, \"floating\": %d, "
                             "\"overlap_max_percent\": %.4f, \"overlap_mean_percent\": %.5f, \"speed_rms_mm_s\": %.4f, "
                             "\"speed_max_mm_s\": %.4f, \"rest\": %s, \"substeps\": %d, \"lost\": %d, "
@@ -230,37 +195,16 @@ static ty_affine body_transform(const ty_body* b)
     return ty_affine_from_trs(b->position, b->rotation, ty_vec3_make(b->scale, b->scale, b->scale));
 }
 
-static ty_aggregate* grains_write(kit* k, const ty_body* bodies, uint32_t count)
-{
-    ty_aggregate* a = ty_aggregate_create(count, k->grain_count);
-    if (!a)
-        return NULL;
-    for (int i = 0; i < k->grain_count; i++)
-    {
-        a->prototypes[i] = k->grains[i].mesh;
-        k->grains[i].mesh = NULL; // now the aggregate's
-    }
-    for (uint32_t i = 0; i < count; i++)
-    {
-        const ty_body* b = &bodies[i];
-        a->transforms[i] = k->frames ? k->frames[i] : body_transform(b);
-        a->prototype_index[i] = b->grain;
-        a->ids[i] = i;
-    }
-    return a;
-}
-
 static ty_status result_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error)
 {
     uint32_t count = (uint32_t)ty_pile_count(k->pile);
     const ty_body* bodies = ty_pile_bodies(k->pile);
-    const ty_aggregate_recipe* r = k->recipe;
-    ty_aggregate* a = r->element.kind == TY_ELEMENT_ROE
-                          ? ty_roe_write(&r->element, r->seed, &k->grains[0], bodies, count)
-                          : grains_write(k, bodies, count);
+    uint32_t* owners;
+    ty_aggregate* a = mixture_write(&k->mix, k->recipe->seed, bodies, k->frames, count, &owners);
     if (!a)
         return ty_error_set(error, TY_NO_MEMORY, "no memory for %u grains", count);
-    attributes_write(k, a);
+    attributes_write(k, owners, a);
+    ty_free(owners);
     a->metrics = metrics_write(k, metrics);
     *out = a;
     return TY_OK;
@@ -300,7 +244,7 @@ static ty_status pile_cut(kit* k, ty_error* error)
 
 static ty_status pile_make(kit* k, ty_error* error)
 {
-    ty_status status = grains_make(k, error);
+    ty_status status = mixture_init(k->recipe, &k->mix, error);
     if (status == TY_OK)
         status = ty_container_create(&k->recipe->container, k->workers, &k->container, error);
     if (status == TY_OK)
@@ -312,8 +256,8 @@ static ty_status pile_make(kit* k, ty_error* error)
     def.rolling = k->recipe->settle.rolling;
     def.rate = k->recipe->settle.rate;
     def.bridge = kit_bridge(k->recipe);
-    def.grains = k->grains;
-    def.grain_count = k->grain_count;
+    def.grains = k->mix.grains;
+    def.grain_count = k->mix.grain_count;
     def.container = k->container;
     k->pile = ty_pile_create(&def);
     return TY_OK;
@@ -377,7 +321,7 @@ static ty_status film_show(kit* k, int frame, const ty_aggregate* first, const t
 static ty_status film_make(kit* k, const ty_aggregate_sink* sink, ty_error* error)
 {
     const ty_animate_def* animate = &k->recipe->animate;
-    if (k->recipe->element.kind == TY_ELEMENT_ROE)
+    if (mixture_holds_roe(k->recipe))
         return ty_error_set(error, TY_BAD_INPUT, "animate.frames: eggs of fish have no film; take other elements");
     if (k->recipe->settle.solver == TY_SOLVER_XPBD || k->recipe->press.strain > 0.0f)
         return ty_error_set(error, TY_BAD_INPUT,
@@ -408,9 +352,7 @@ static ty_status recipe_make(const void* def, ty_workers* workers, ty_aggregate*
                              ty_error* error)
 {
     ty_aggregate_recipe recipe = *(const ty_aggregate_recipe*)def;
-    ty_status status = recipe.element.kind == TY_ELEMENT_ROE ? ty_roe_complete(&recipe.element, error) : TY_OK;
-    if (status == TY_OK)
-        status = recipe_check(&recipe, error);
+    ty_status status = recipe_check(&recipe, error);
     if (status != TY_OK)
         return status;
     kit* k = TY_ALLOC(kit, 1);
@@ -421,8 +363,7 @@ static ty_status recipe_make(const void* def, ty_workers* workers, ty_aggregate*
     ty_free(k->frames);
     ty_pile_destroy(k->pile);
     ty_container_destroy(k->container);
-    for (int i = 0; i < k->grain_count; i++)
-        ty_element_term(&k->grains[i]);
+    mixture_term(&k->mix);
     ty_free(k);
     return status;
 }

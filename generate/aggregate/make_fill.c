@@ -9,7 +9,7 @@
 // Lets grains fall onto the pile: in layers over its planned surface, so far apart that they do not touch.
 void kit_drop(kit* k, int count)
 {
-    float length = 1.1f * k->recipe->element.length * (1.0f + 2.0f * k->recipe->element.variation);
+    float length = 1.1f * k->mix.longest * (1.0f + 2.0f * k->mix.variation);
     ty_bounds interior = ty_container_interior(k->container);
     ty_vec3 center = ty_mul(ty_add(interior.low, interior.high), 0.5f);
     float radius = 0.58f * ty_min(k->top.radius_x, k->top.radius_z), above = 0.6f * length;
@@ -64,8 +64,8 @@ static void thesis(kit* k, const ty_vec3* points, int count, double volume)
     for (int i = 0; i < count; i++)
         bodies[i] = kit_body(k, points[i], k->recipe->fill.tilt);
     float spacing = ty_pow((float)(0.73 * volume / (double)count), 1.0f / 3.0f); // of a saturated Poisson-disk set
-    k->removed =
-        ty_fill_thesis(k->container, k->grains, k->grain_count, &k->recipe->fill.thesis, spacing, bodies, count, gone);
+    k->removed = ty_fill_thesis(k->container, k->mix.grains, k->mix.grain_count, &k->recipe->fill.thesis, spacing,
+                                bodies, count, gone);
     for (int i = 0; i < count; i++)
         if (!gone[i])
             ty_pile_add(k->pile, &bodies[i], 1);
@@ -77,9 +77,9 @@ static void thesis(kit* k, const ty_vec3* points, int count, double volume)
 static ty_status lattice(kit* k, ty_vec3* points, int count, ty_error* error)
 {
     ty_vec3 pitch = {0.0f, 0.0f, 0.0f};
-    for (int i = 0; i < k->grain_count; i++)
+    for (int i = 0; i < k->mix.grain_count; i++)
     {
-        ty_vec3 size = ty_sub(k->grains[i].mesh->bounds.high, k->grains[i].mesh->bounds.low);
+        ty_vec3 size = ty_sub(k->mix.grains[i].mesh->bounds.high, k->mix.grains[i].mesh->bounds.low);
         pitch = ty_vec3_make(ty_max(pitch.x, size.x), ty_max(pitch.y, size.y), ty_max(pitch.z, size.z));
     }
     pitch = ty_mul(pitch, 1.02f);
@@ -107,7 +107,7 @@ static ty_status count_find(kit* k, float inset, ty_error* error)
         return TY_OK;
     float level = fill->target == TY_FILL_LEVEL ? fill->level : 0.0f;
     double space = ty_fill_space(k->container, level, fill->heap, inset);
-    double count = space * (double)fill->density / (double)k->volume;
+    double count = space * (double)fill->density / (double)k->mix.volume;
     if (count >= 1.0 && count <= TY_FILL_MOST)
     {
         k->count = (int)count;
@@ -141,14 +141,14 @@ static ty_status kit_start(kit* k, int count, double volume, float inset, ty_err
 ty_status kit_fill(kit* k, ty_error* error)
 {
     const ty_fill_def* fill = &k->recipe->fill;
-    float inset = 0.25f * k->recipe->element.width;
+    float inset = 0.25f * k->mix.width;
     ty_status status = count_find(k, inset, error);
     if (status != TY_OK)
         return status;
     int count = k->count;
     if (ty_container_is_open(k->container) && fill->start == TY_FILL_INFLATE)
         count -= (int)((float)count * fill->sprinkle);
-    double volume = (double)count * (double)k->volume / (double)fill->density, capacity;
+    double volume = (double)count * (double)k->mix.volume / (double)fill->density, capacity;
     status = ty_fill_plan(k->container, volume, fill->heap, inset, &k->top, &capacity, error);
     if (status != TY_OK)
         return ty_error_set(error, status, "fill.count: %d grains at a density of %g; the container holds at most %d",
@@ -158,7 +158,7 @@ ty_status kit_fill(kit* k, ty_error* error)
         return status;
     if (fill->start != TY_FILL_INFLATE)
         ty_pile_measure(k->pile, &k->start, NULL);
-    k->start_repeat = ty_pile_repeat(ty_pile_bodies(k->pile), ty_pile_count(k->pile), k->recipe->element.width);
+    k->start_repeat = ty_pile_repeat(ty_pile_bodies(k->pile), ty_pile_count(k->pile), k->mix.width);
     ty_log(TY_LOG_INFO, "aggregate: %d grains placed, %d taken out, overlap %.2f %% of the width at most, %.3f %% mean",
            ty_pile_count(k->pile), k->removed, (double)k->start.overlap_max * 100.0,
            (double)k->start.overlap_mean * 100.0);

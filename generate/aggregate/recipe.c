@@ -31,7 +31,10 @@ ty_aggregate_recipe ty_aggregate_recipe_default(void)
 
 // --- element ---
 
-static const char* const grain_kinds[] = {"rice", "roe", NULL};
+static const char* const element_kinds[] = {"rice", "roe",  "ball",   "ice",  "grape",
+                                            "bean", "tofu", "pebble", "mesh", NULL};
+static const char* const cultivars[] = {"japonica", "indica", "aromatic", "glutinous", NULL};
+static const char* const beans[] = {"red", "black", "white", NULL};
 static const char* const roe_presets[] = {"ikura", "tobiko", "tarako", "kazunoko", NULL};
 
 static void roe_set_default(void* def)
@@ -67,27 +70,40 @@ static void grain_set_default(void* def)
     *(ty_element_def*)def = ty_element_def_default();
 }
 
+const char* ty_element_kind_name(const ty_element_def* def)
+{
+    return def->kind == TY_ELEMENT_BEAN ? beans[def->bean] : element_kinds[def->kind];
+}
+
 #define OWNER ty_element_def
 static const ty_param grain_rows[] = {
-    {"kind", TY_PARAM_ENUM, "", 0, 0, grain_kinds, NULL, offsetof(OWNER, kind),
-     "what one element is; all below but the variation is of rice", false},
-    FIELD("length", TY_PARAM_FLOAT, "mm", 0.2, 100, length, "mean length"),
-    FIELD("width", TY_PARAM_FLOAT, "mm", 0.1, 100, width, "mean width, at most the length"),
-    FIELD("thickness", TY_PARAM_FLOAT, "mm", 0.05, 100, thickness, "mean thickness, from half the width to the width"),
+    {"kind", TY_PARAM_ENUM, "", 0, 0, element_kinds, NULL, offsetof(OWNER, kind), "what one element is", false},
+    FIELD("ratio", TY_PARAM_FLOAT, "", 0, 1e6, ratio, "in a list of elements: how many of these against the others"),
+    {"cultivar", TY_PARAM_ENUM, "", 0, 0, cultivars, NULL, offsetof(OWNER, cultivar),
+     "of rice: its sizes, where none are given", false},
+    {"bean", TY_PARAM_ENUM, "", 0, 0, beans, NULL, offsetof(OWNER, bean), "of beans: the sizes, where none are given",
+     false},
+    FIELD("mesh", TY_PARAM_PATH, "", 0, 0, mesh, "a closed mesh, with kind mesh"),
+    FIELD("length", TY_PARAM_FLOAT, "mm", 0, 500, length,
+          "mean length; 0 = of the kind, of a mesh as its file has it. But for rice, sizes of 0 follow those given"),
+    FIELD("width", TY_PARAM_FLOAT, "mm", 0, 500, width, "mean width, at most the length; 0 = of the kind"),
+    FIELD("thickness", TY_PARAM_FLOAT, "mm", 0, 500, thickness,
+          "mean thickness, to the width, of rice from half of it, else from a fifth; 0 = of the kind"),
     FIELD("variation", TY_PARAM_FLOAT, "", 0, 0.2, variation, "standard deviation of the sizes, relative"),
-    FIELD("variants", TY_PARAM_INT, "", 1, TY_ELEMENT_MAX_VARIANTS, variants, "how many different meshes are made"),
-    FIELD("notch", TY_PARAM_FLOAT, "", 0, 0.3, notch, "depth of the germ's dent, of the width"),
+    FIELD("variants", TY_PARAM_INT, "", 1, TY_ELEMENT_MAX_VARIANTS, variants,
+          "how many different meshes are made; of ball, roe and mesh there is one"),
+    FIELD("notch", TY_PARAM_FLOAT, "", 0, 0.3, notch,
+          "depth of the dent of a germ, a hilum or a stem (a third of it), of the width"),
     FIELD("divisions", TY_PARAM_INT, "", 4, 64, divisions, "cells across the width of a mesh"),
+    FIELD("fit", TY_PARAM_FLOAT, "", 0.01, 0.2, fit,
+          "farthest that balls and surface are apart, of the width; rice has ten balls whatever it is"),
     {"roe", TY_PARAM_GROUP, "", 0, 0, NULL, &roe_table, offsetof(OWNER, roe), "with kind roe: the egg", false},
 };
 #undef OWNER
 
-static const ty_param_table grain_table = {"aggregate.element",
-                                           "The grain that an aggregate is made of.",
-                                           sizeof(ty_element_def),
-                                           grain_set_default,
-                                           grain_rows,
-                                           TY_PARAM_COUNT(grain_rows)};
+static const ty_param_table grain_table = {
+    "aggregate.element", "What an aggregate is made of.", sizeof(ty_element_def), grain_set_default,
+    grain_rows,          TY_PARAM_COUNT(grain_rows)};
 
 const ty_param_table* ty_element_params(void)
 {
@@ -315,7 +331,10 @@ static void recipe_set_default(void* def)
 #member, TY_PARAM_GROUP, "", 0, 0, NULL, table, offsetof(OWNER, member), help, false                           \
     }
 static const ty_param recipe_rows[] = {
-    GROUP(element, &grain_table, "the grain"),
+    GROUP(element, &grain_table, "what is packed"),
+    {"elements", TY_PARAM_LIST, "", 0, 0, NULL, &grain_table, offsetof(OWNER, elements),
+     "kinds that are mixed by ratio, at most 16, in place of element; a mesh without slots has one of its kind's name",
+     false},
     GROUP(container, &container_table, "what the grains lie in"),
     GROUP(fill, &fill_table, "how many, how dense, how high"),
     GROUP(settle, &settle_table, "how they come to rest"),

@@ -90,39 +90,23 @@ static ty_affine shrunk(const ty_affine* frame, float share, float lift)
     return m;
 }
 
-// The membrane has one thickness whatever the size of the egg. The yolk is the lipid's ball (radius r_i L^(1/3)) and
-// floats against the membrane but for a hair, so that the two meshes do not cut one another.
-static void egg_write(const ty_element_def* def, const ty_body* body, uint32_t egg, ty_rng* rng, ty_aggregate* out)
+void ty_roe_prototypes(const ty_mesh* membrane, ty_mesh* out[2])
 {
-    const float hair = 0.006f;
-    uint32_t count = out->instance_count / TY_ROE_BODIES;
-    ty_affine frame = egg_frame(def, body, rng);
-    float r = 0.5f * def->roe.diameter, white = 1.0f - def->roe.membrane / (r * body->scale);
-    float yolk = ty_exp(ty_ln(def->roe.yolk) / 3.0f);
-    out->transforms[egg] = frame;
-    out->transforms[egg + count] = shrunk(&frame, white, 0.0f);
-    out->transforms[egg + 2 * count] = shrunk(&frame, white * yolk, white * (1.0f - yolk - hair) * r);
+    out[0] = body_mesh(membrane, "white");
+    out[1] = body_mesh(membrane, "yolk");
 }
 
-ty_aggregate* ty_roe_write(const ty_element_def* def, ty_seed seed, ty_element* egg, const ty_body* bodies,
-                           uint32_t count)
+// The membrane has one thickness whatever the size of the egg. The yolk is the lipid's ball (radius r_i L^(1/3)) and
+// floats against the membrane but for a hair, so that the two meshes do not cut one another.
+void ty_roe_place(const ty_element_def* def, ty_seed seed, const ty_body* body, uint32_t index,
+                  ty_affine out[TY_ROE_BODIES])
 {
-    ty_aggregate* a = ty_aggregate_create(TY_ROE_BODIES * count, TY_ROE_BODIES);
-    if (!a)
-        return NULL;
-    a->prototypes[1] = body_mesh(egg->mesh, "white");
-    a->prototypes[2] = body_mesh(egg->mesh, "yolk");
-    a->prototypes[0] = egg->mesh;
-    egg->mesh = NULL; // now the aggregate's
-    for (uint32_t i = 0; i < a->instance_count; i++)
-    {
-        a->prototype_index[i] = i / count;
-        a->ids[i] = i;
-    }
-    for (uint32_t i = 0; i < count; i++)
-    {
-        ty_rng rng = ty_rng_make(seed, 0x726f65, i);
-        egg_write(def, &bodies[i], i, &rng, a);
-    }
-    return a;
+    const float hair = 0.006f;
+    ty_rng rng = ty_rng_make(seed, 0x726f65, index);
+    ty_affine frame = egg_frame(def, body, &rng);
+    float r = 0.5f * def->roe.diameter, white = 1.0f - def->roe.membrane / (r * body->scale);
+    float yolk = ty_exp(ty_ln(def->roe.yolk) / 3.0f);
+    out[0] = frame;
+    out[1] = shrunk(&frame, white, 0.0f);
+    out[2] = shrunk(&frame, white * yolk, white * (1.0f - yolk - hair) * r);
 }

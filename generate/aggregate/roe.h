@@ -15,7 +15,10 @@ TY_CHECKED ty_status ty_roe_complete(ty_element_def* def, ty_error* error);
 // The ball of an egg of mean size, and its membrane's mesh, a sphere whose one slot is `membrane`. def is complete.
 TY_CHECKED ty_status ty_roe_init(const ty_element_def* def, ty_element* out, ty_error* error);
 
-// Appends to an egg's membrane the prototypes of white and yolk, and to each settled body the three instances of its
-// egg: all membranes, all whites, all yolks, in the order of the bodies. NULL: no memory. def is complete.
-TY_CHECKED ty_aggregate* ty_roe_write(const ty_element_def* def, ty_seed seed, ty_element* egg, const ty_body* bodies,
-                                      uint32_t count);
+// Meshes of white and yolk, of the membrane's size; the caller's.
+void ty_roe_prototypes(const ty_mesh* membrane, ty_mesh* out[2]);
+
+// Where membrane, white and yolk of a settled body lie: the prototypes' maps. index: which egg, for its chance. def is
+// complete.
+void ty_roe_place(const ty_element_def* def, ty_seed seed, const ty_body* body, uint32_t index,
+                  ty_affine out[TY_ROE_BODIES]);

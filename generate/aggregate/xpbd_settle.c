@@ -14,7 +14,7 @@ static float press_depth(float t)
 
 static float top_of(const ty_xpbd* x, const kit* k)
 {
-    float top = ty_container_interior(k->container).low.y, reach = 0.5f * k->recipe->element.thickness;
+    float top = ty_container_interior(k->container).low.y, reach = 0.5f * k->mix.thickness;
     for (int i = 0; i < ty_xpbd_particle_count(x); i++)
         top = ty_max(top, ty_xpbd_position(x, i).y + reach);
     return top;
@@ -77,7 +77,7 @@ ty_status kit_soften(kit* k, ty_pile_metrics* metrics, ty_error* error)
     for (int i = 0; i < ty_pile_count(k->pile); i++)
     {
         const ty_body* body = &ty_pile_bodies(k->pile)[i];
-        ty_xpbd_add_element(x, &k->grains[body->grain], body);
+        ty_xpbd_add_element(x, &k->mix.grains[body->grain], body);
     }
     if (settle->solver == TY_SOLVER_XPBD)
         run(x, k, settle->max_seconds, false);

@@ -350,7 +350,7 @@ static void test_lost(void** state)
     ty_element grain;
     ty_element_def rice = ty_element_def_default();
     assert_int_equal(ty_container_create(&def, NULL, &bowl, &error), TY_OK);
-    assert_int_equal(ty_rice_init(&rice, (ty_seed){1}, 0, &grain, &error), TY_OK);
+    assert_int_equal(ty_element_init(&rice, (ty_seed){1}, 0, &grain, &error), TY_OK);
     ty_pile_def pile_def = ty_pile_def_default();
     pile_def.grains = &grain;
     pile_def.grain_count = 1;

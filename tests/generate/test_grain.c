@@ -7,18 +7,26 @@
 
 static const ty_seed seed = {11};
 
+static ty_element_def def_complete(void)
+{
+    ty_element_def def = ty_element_def_default();
+    ty_error error;
+    assert_int_equal(ty_element_complete(&def, "element", &error), TY_OK);
+    return def;
+}
+
 static ty_element grain_make(const ty_element_def* def, int variant)
 {
     ty_element grain;
     ty_error error;
-    assert_int_equal(ty_rice_init(def, seed, variant, &grain, &error), TY_OK);
+    assert_int_equal(ty_element_init(def, seed, variant, &grain, &error), TY_OK);
     return grain;
 }
 
 static void test_closed_and_outward(void** state)
 {
     (void)state;
-    ty_element_def def = ty_element_def_default();
+    ty_element_def def = def_complete();
     for (int v = 0; v < 4; v++)
     {
         ty_element grain = grain_make(&def, v);
@@ -37,7 +45,7 @@ static void test_closed_and_outward(void** state)
 static void test_volume(void** state)
 {
     (void)state;
-    ty_element_def def = ty_element_def_default();
+    ty_element_def def = def_complete();
     def.variation = 0.0f;
     def.notch = 0.0f;
     double expected = 1.5 * 3.14159265358979 * (double)def.length * (double)def.width * (double)def.thickness / 8.0;
@@ -63,7 +71,7 @@ static double corner_angle(const ty_mesh* mesh, uint32_t triangle, int corner)
 static void test_no_slivers_and_smooth(void** state)
 {
     (void)state;
-    ty_element_def def = ty_element_def_default();
+    ty_element_def def = def_complete();
     for (int v = 0; v < 4; v++)
     {
         ty_element grain = grain_make(&def, v);
@@ -96,7 +104,7 @@ static float union_distance(const ty_element* grain, ty_vec3 p)
 static void test_balls_meet_the_surface(void** state)
 {
     (void)state;
-    ty_element_def def = ty_element_def_default();
+    ty_element_def def = def_complete();
     def.notch = 0.0f;
     for (int v = 0; v < 8; v++)
     {
@@ -121,7 +129,7 @@ static void test_balls_meet_the_surface(void** state)
 static void test_notch(void** state)
 {
     (void)state;
-    ty_element_def def = ty_element_def_default();
+    ty_element_def def = def_complete();
     ty_element dented = grain_make(&def, 0);
     def.notch = 0.0f;
     ty_element whole = grain_make(&def, 0);
@@ -148,7 +156,7 @@ static void test_notch(void** state)
 static void test_inertia(void** state)
 {
     (void)state;
-    ty_element_def def = ty_element_def_default();
+    ty_element_def def = def_complete();
     def.variation = 0.0f;
     ty_element grain = grain_make(&def, 0);
     double a = (double)def.length / 2, b = (double)def.width / 2, c = (double)def.thickness / 2;
@@ -164,7 +172,7 @@ static void test_inertia(void** state)
 static void test_variants_differ_and_repeat(void** state)
 {
     (void)state;
-    ty_element_def def = ty_element_def_default();
+    ty_element_def def = def_complete();
     ty_element a = grain_make(&def, 0), again = grain_make(&def, 0), b = grain_make(&def, 1);
     size_t size = a.mesh->vertex_count * sizeof(ty_vec3);
     assert_memory_equal(a.mesh->positions, again.mesh->positions, size);
@@ -189,13 +197,13 @@ static void test_variants_differ_and_repeat(void** state)
 static void test_no_memory(void** state)
 {
     (void)state;
-    ty_element_def def = ty_element_def_default();
+    ty_element_def def = def_complete();
     for (long n = 0; n < 2; n++)
     {
         ty_element grain;
         ty_error error;
         ty_memory_fail_after(n);
-        assert_int_equal(ty_rice_init(&def, seed, 0, &grain, &error), TY_NO_MEMORY);
+        assert_int_equal(ty_element_init(&def, seed, 0, &grain, &error), TY_NO_MEMORY);
         ty_memory_fail_after(-1);
         assert_null(grain.mesh);
     }

@@ -20,7 +20,7 @@ static int group_setup(void** state)
     ty_error error;
     for (int i = 0; i < VARIANTS; i++)
     {
-        assert_int_equal(ty_rice_init(&def, (ty_seed){5}, i, &grains[i], &error), TY_OK);
+        assert_int_equal(ty_element_init(&def, (ty_seed){5}, i, &grains[i], &error), TY_OK);
         mean_volume += grains[i].volume / VARIANTS;
     }
     return 0;

@@ -411,7 +411,7 @@ static void test_same_bits_and_energy(void** state)
     ty_element grain;
     ty_element_def element = ty_element_def_default();
     ty_error error;
-    assert_int_equal(ty_rice_init(&element, (ty_seed){5}, 0, &grain, &error), TY_OK);
+    assert_int_equal(ty_element_init(&element, (ty_seed){5}, 0, &grain, &error), TY_OK);
     double growth[3];
     ty_hash one = heap_hash(&grain, 1, &growth[0]), two = heap_hash(&grain, 2, &growth[1]);
     ty_hash three = heap_hash(&grain, 3, &growth[2]);
@@ -430,7 +430,7 @@ static void test_frame(void** state)
     ty_element grain;
     ty_element_def element = ty_element_def_default();
     ty_error error;
-    assert_int_equal(ty_rice_init(&element, (ty_seed){5}, 0, &grain, &error), TY_OK);
+    assert_int_equal(ty_element_init(&element, (ty_seed){5}, 0, &grain, &error), TY_OK);
     ty_xpbd_def def = free_def();
     ty_xpbd* x = ty_xpbd_create(&def);
     ty_body body = {.position = {0.01f, 0.02f, 0.03f}, .scale = 1.1f};

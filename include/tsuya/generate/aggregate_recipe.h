@@ -90,6 +90,7 @@ typedef struct ty_animate_def
 typedef struct ty_aggregate_recipe
 {
     ty_element_def element;
+    ty_param_list elements; // of ty_element_def, borrowed: kinds by ratio, in place of element where there are any
     ty_container_def container;
     ty_fill_def fill;
     ty_settle_def settle;

@@ -16,7 +16,29 @@ typedef enum ty_element_kind
 {
     TY_ELEMENT_RICE,
     TY_ELEMENT_ROE, // a fish's egg: membrane, white and yolk, clear bodies in one another
+    TY_ELEMENT_BALL,
+    TY_ELEMENT_ICE,    // a flake with flat facets
+    TY_ELEMENT_GRAPE,  // a little longer than wide, dented at the stem
+    TY_ELEMENT_BEAN,   // bent, dented at the hilum
+    TY_ELEMENT_TOFU,   // a cut block with round edges
+    TY_ELEMENT_PEBBLE, // the shape `stone`
+    TY_ELEMENT_MESH,   // any closed mesh
 } ty_element_kind;
+
+typedef enum ty_cultivar
+{
+    TY_CULTIVAR_JAPONICA,
+    TY_CULTIVAR_INDICA,
+    TY_CULTIVAR_AROMATIC,
+    TY_CULTIVAR_GLUTINOUS,
+} ty_cultivar;
+
+typedef enum ty_bean
+{
+    TY_BEAN_RED, // kidney
+    TY_BEAN_BLACK,
+    TY_BEAN_WHITE,
+} ty_bean;
 
 typedef enum ty_roe_preset
 {
@@ -39,19 +61,31 @@ typedef struct ty_roe_def
 
 typedef struct ty_element_def
 {
-    int kind;        // ty_element_kind; what follows is of rice, but for the variation
-    float length;    // m, along x
-    float width;     // m, along y; <= length
-    float thickness; // m, along z; half the width .. the width
-    float variation; // standard deviation of the three sizes, relative, 0..0.2
-    int variants;    // different meshes, 1..TY_ELEMENT_MAX_VARIANTS
-    float notch;     // depth of the germ's dent, of the width, 0..0.3
-    int divisions;   // cells across the width, 4..64; triangles = 4 (2 n d + d^2), n = round(d length / width)
+    int kind;         // ty_element_kind
+    float ratio;      // how many of this kind against the others of a mixture, >= 0
+    int cultivar;     // ty_cultivar, of rice
+    int bean;         // ty_bean, of beans
+    const char* mesh; // path, with TY_ELEMENT_MESH
+    float length;     // m, along x; 0 = of the kind, of a mesh its own
+    float width;      // m, along y; <= length; 0 = of the kind
+    float thickness;  // m, along z; <= width; 0 = of the kind
+    float variation;  // standard deviation of the three sizes, relative, 0..0.2
+    int variants;     // different meshes, 1..TY_ELEMENT_MAX_VARIANTS; balls, roe and meshes have one
+    float notch;      // depth of the dent of germ, stem or hilum, of the width, 0..0.3
+    int divisions;    // cells across the width, 4..64; rice: triangles = 4 (2 n d + d^2), n = round(d length / width)
+    float fit;        // largest distance of balls and surface, of the width, 0.01..0.2; not of rice, which has ten
     ty_roe_def roe;
 } ty_element_def;
 
+// Names of kind, cultivar, bean and egg as a recipe writes them, e.g. "rice", "red"; of eggs "roe".
+const char* ty_element_kind_name(const ty_element_def* def);
+
 ty_element_def ty_element_def_default(void); // cooked japonica rice
 const ty_param_table* ty_element_params(void);
+
+// Puts in the sizes that are 0, those of the kind; what is impossible is TY_BAD_INPUT. name: the element's, for
+// messages.
+TY_CHECKED ty_status ty_element_complete(ty_element_def* def, const char* name, ty_error* error);
 
 typedef struct ty_ball
 {
@@ -73,11 +107,11 @@ typedef struct ty_element
     float fit_rms, fit_max;   // m, distance of the mesh without its dent from the union of the balls
 } ty_element;
 
-// The blunt ellipsoid |x/a|^3 + (y/b)^2 + (z/c)^2 = 1 with taper, bend, twist, longitudinal ridges and the germ's
-// dent; each variant of a seed differs. The caller frees with ty_element_term. On failure *out is zeroed.
-TY_CHECKED ty_status ty_rice_init(const ty_element_def* def, ty_seed seed, int variant, ty_element* out,
-                                  ty_error* error);
-void ty_element_term(ty_element* grain); // a zeroed one is allowed
+// One variant of a kind; each of a seed differs. def is complete. The caller frees with ty_element_term. On failure
+// *out is zeroed: TY_BAD_INPUT for a mesh that is not closed, TY_BAD_FILE for one that cannot be read, TY_NO_MEMORY.
+TY_CHECKED ty_status ty_element_init(const ty_element_def* def, ty_seed seed, int variant, ty_element* out,
+                                     ty_error* error);
+void ty_element_term(ty_element* element); // a zeroed one is allowed
 
 // A bell-shaped number, mean 0 and variance 1, within +-2 sqrt(3): the sum of four uniform ones.
 float ty_element_bell(ty_rng* rng);

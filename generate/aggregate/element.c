@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// Elements of every kind: the sizes that a kind has, its mesh and balls, and what the solid weighs.
+#include "balls.h"
+#include "element_kinds.h"
+#include "roe.h"
+#include <string.h>
+
+ty_element_def ty_element_def_default(void)
+{
+    return (ty_element_def){.kind = TY_ELEMENT_RICE,
+                            .ratio = 1.0f,
+                            .variation = 0.06f,
+                            .variants = 16,
+                            .notch = 0.15f,
+                            .divisions = 9,
+                            .fit = 0.03f,
+                            .roe = {.lean = TY_PI / 4.0f, .press = 0.012f}};
+}
+
+float ty_element_bell(ty_rng* rng)
+{
+    float sum = 0.0f;
+    for (int i = 0; i < 4; i++)
+        sum += ty_rng_float(rng);
+    return (sum - 2.0f) * 1.73205081f;
+}
+
+// --- sizes ---
+
+// Cooked grains. Lengths of indica and aromatic rice stand to japonica's as 1.8 and .7, swollen by 1.2 and 1.5 of the
+// volume against 1.5: (1.2 / 1.5)^(1/3) of every size of indica.
+static const ty_vec3 rice_sizes[] = {
+    [TY_CULTIVAR_JAPONICA] = {7.2e-3f, 3.0e-3f, 2.5e-3f},
+    [TY_CULTIVAR_INDICA] = {12.0e-3f, 2.78e-3f, 2.32e-3f},
+    [TY_CULTIVAR_AROMATIC] = {5.04e-3f, 3.0e-3f, 2.5e-3f},
+    [TY_CULTIVAR_GLUTINOUS] = {6.6e-3f, 3.2e-3f, 2.75e-3f},
+};
+
+static const ty_vec3 bean_sizes[] = {
+    [TY_BEAN_RED] = {16.0e-3f, 8.2e-3f, 6.6e-3f},
+    [TY_BEAN_BLACK] = {10.0e-3f, 6.6e-3f, 5.0e-3f},
+    [TY_BEAN_WHITE] = {8.5e-3f, 6.0e-3f, 5.4e-3f},
+};
+
+static const ty_vec3 other_sizes[] = {
+    [TY_ELEMENT_BALL] = {10.0e-3f, 10.0e-3f, 10.0e-3f},  [TY_ELEMENT_ICE] = {3.0e-3f, 2.4e-3f, 1.1e-3f},
+    [TY_ELEMENT_GRAPE] = {24.0e-3f, 20.5e-3f, 20.5e-3f}, [TY_ELEMENT_TOFU] = {12.0e-3f, 12.0e-3f, 12.0e-3f},
+    [TY_ELEMENT_PEBBLE] = {14.0e-3f, 10.5e-3f, 7.0e-3f}, [TY_ELEMENT_MESH] = {10.0e-3f, 10.0e-3f, 10.0e-3f},
+};
+
+static ty_vec3 kind_size(const ty_element_def* def)
+{
+    if (def->kind == TY_ELEMENT_RICE)
+        return rice_sizes[def->cultivar];
+    return def->kind == TY_ELEMENT_BEAN ? bean_sizes[def->bean] : other_sizes[def->kind];
+}
+
+static ty_status sizes_check(const ty_element_def* e, const char* name, ty_error* error)
+{
+    const double mm = 1e3;
+    double length = (double)e->length * mm, width = (double)e->width * mm, thickness = (double)e->thickness * mm;
+    double thinnest = e->kind == TY_ELEMENT_RICE ? 0.5 : 0.2;
+    if (!(width >= 0.1 && length >= width && length <= 12.0 * width))
+        return ty_error_set(error, TY_BAD_INPUT, "%s.length: %g mm; with a width of %g mm it lies in %g..%g", name,
+                            length, width, width, 12.0 * width);
+    if (!(thickness >= thinnest * width && thickness <= width))
+        return ty_error_set(error, TY_BAD_INPUT, "%s.thickness: %g mm; with a width of %g mm it lies in %g..%g", name,
+                            thickness, width, thinnest * width, width);
+    if (e->variants < 1 || e->variants > TY_ELEMENT_MAX_VARIANTS)
+        return ty_error_set(error, TY_BAD_INPUT, "%s.variants: %d; it lies in 1..%d", name, e->variants,
+                            TY_ELEMENT_MAX_VARIANTS);
+    return TY_OK;
+}
+
+// Sizes that are not said follow those that are; of rice they are the cultivar's.
+static void sizes_complete(ty_element_def* def)
+{
+    ty_vec3 size = kind_size(def);
+    float share = def->length > 0.0f  ? def->length / size.x
+                  : def->width > 0.0f ? def->width / size.y
+                                      : def->thickness / size.z;
+    if (share <= 0.0f || def->kind == TY_ELEMENT_RICE)
+        share = 1.0f;
+    def->length = def->length > 0.0f ? def->length : share * size.x;
+    def->width = def->width > 0.0f ? def->width : share * size.y;
+    def->thickness = def->thickness > 0.0f ? def->thickness : share * size.z;
+}
+
+ty_status ty_element_complete(ty_element_def* def, const char* name, ty_error* error)
+{
+    if (def->kind == TY_ELEMENT_ROE)
+        return ty_roe_complete(def, error);
+    if (def->kind == TY_ELEMENT_MESH)
+        return ty_solid_complete(def, name, error);
+    sizes_complete(def);
+    if (def->kind == TY_ELEMENT_BALL)
+    {
+        def->width = def->thickness = def->length;
+        def->variants = 1;
+    }
+    return sizes_check(def, name, error);
+}
+
+// --- making ---
+
+ty_status ty_element_init(const ty_element_def* def, ty_seed seed, int variant, ty_element* out, ty_error* error)
+{
+    memset(out, 0, sizeof *out);
+    ty_element_def complete = *def;
+    ty_status status = ty_element_complete(&complete, "element", error);
+    if (status != TY_OK)
+        return status;
+    if (complete.kind == TY_ELEMENT_ROE)
+        return ty_roe_init(&complete, out, error);
+    if (complete.kind == TY_ELEMENT_RICE)
+        return ty_rice_init(&complete, seed, variant, out, error);
+    status = complete.kind == TY_ELEMENT_ICE ? ty_ice_mesh(&complete, seed, variant, &out->mesh, error)
+                                             : ty_solid_mesh(&complete, seed, variant, &out->mesh, error);
+    if (status == TY_OK)
+    {
+        (void)ty_element_weigh(out);
+        ty_mesh_compute_bounds(out->mesh);
+        status = ty_element_fit(out, complete.fit, error);
+    }
+    if (status != TY_OK)
+    {
+        ty_element_term(out);
+        return status;
+    }
+    ty_element_enclose(out);
+    return TY_OK;
+}
+
+void ty_element_term(ty_element* element)
+{
+    ty_mesh_destroy(element->mesh);
+    memset(element, 0, sizeof *element);
+}
+
+// Volume, centre of mass and inertia per unit mass of the solid, by signed tetrahedra from the origin (Tonon 2004).
+static void mass_properties(const ty_mesh* mesh, double* volume, double center[3], double inertia[6])
+{
+    double v6 = 0.0, first[3] = {0}, second[3][3] = {{0}};
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+    {
+        double p[3][3], sum[3];
+        for (int e = 0; e < 3; e++)
+        {
+            ty_vec3 q = mesh->positions[mesh->triangles[t][e]];
+            p[e][0] = (double)q.x, p[e][1] = (double)q.y, p[e][2] = (double)q.z;
+        }
+        double d = p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) -
+                   p[0][1] * (p[1][0] * p[2][2] - p[1][2] * p[2][0]) +
+                   p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+        v6 += d;
+        for (int i = 0; i < 3; i++)
+        {
+            sum[i] = p[0][i] + p[1][i] + p[2][i];
+            first[i] += d * sum[i] / 4.0;
+        }
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                second[i][j] +=
+                    d * (sum[i] * sum[j] + p[0][i] * p[0][j] + p[1][i] * p[1][j] + p[2][i] * p[2][j]) / 20.0;
+    }
+    *volume = v6 / 6.0;
+    double m[3][3];
+    for (int i = 0; i < 3; i++)
+        center[i] = first[i] / v6;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            m[i][j] = second[i][j] / v6 - center[i] * center[j];
+    inertia[0] = m[1][1] + m[2][2], inertia[1] = m[2][2] + m[0][0], inertia[2] = m[0][0] + m[1][1];
+    inertia[3] = -m[0][1], inertia[4] = -m[0][2], inertia[5] = -m[1][2];
+}
+
+static void symmetric_inverse(const double s[6], float out[6])
+{
+    double xx = s[1] * s[2] - s[5] * s[5], xy = s[4] * s[5] - s[3] * s[2], xz = s[3] * s[5] - s[4] * s[1];
+    double d = s[0] * xx + s[3] * xy + s[4] * xz;
+    out[0] = (float)(xx / d), out[3] = (float)(xy / d), out[4] = (float)(xz / d);
+    out[1] = (float)((s[0] * s[2] - s[4] * s[4]) / d);
+    out[2] = (float)((s[0] * s[1] - s[3] * s[3]) / d);
+    out[5] = (float)((s[3] * s[4] - s[0] * s[5]) / d);
+}
+
+ty_vec3 ty_element_weigh(ty_element* element)
+{
+    ty_mesh* mesh = element->mesh;
+    double volume, center[3], inertia[6];
+    mass_properties(mesh, &volume, center, inertia);
+    ty_vec3 shift = {(float)center[0], (float)center[1], (float)center[2]};
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        mesh->positions[i] = ty_sub(mesh->positions[i], shift);
+    element->volume = (float)volume;
+    symmetric_inverse(inertia, element->inverse_inertia);
+    return shift;
+}
+
+void ty_element_enclose(ty_element* element)
+{
+    const ty_mesh* mesh = element->mesh;
+    element->radius = 0.0f;
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        element->radius = ty_max(element->radius, ty_length(mesh->positions[i]));
+    for (int i = 0; i < element->ball_count; i++)
+        element->radius = ty_max(element->radius, ty_length(element->balls[i].center) + element->balls[i].radius);
+}

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// Elements of every kind: closed solids of known mass, met by their balls, the same from run to run; mixtures by ratio;
+// what cannot be is refused.
+#include "base/cmocka_all.h"
+#include <stdio.h>
+#include <string.h>
+#include <tsuya/base/file.h>
+#include <tsuya/generate/aggregate_recipe.h>
+#include <tsuya/geometry/mesh_file.h>
+#include <tsuya/geometry/shape.h>
+#include <unistd.h>
+
+static const ty_seed seed = {5};
+static const int solids[] = {TY_ELEMENT_BALL, TY_ELEMENT_ICE,  TY_ELEMENT_GRAPE,
+                             TY_ELEMENT_BEAN, TY_ELEMENT_TOFU, TY_ELEMENT_PEBBLE};
+
+static ty_element_def def_of(int kind)
+{
+    ty_element_def def = ty_element_def_default();
+    def.kind = kind;
+    return def;
+}
+
+static void element_make(const ty_element_def* def, int variant, ty_element* out)
+{
+    ty_error error;
+    if (ty_element_init(def, seed, variant, out, &error) != TY_OK)
+        fail_msg("%s", error.text);
+}
+
+static void closed_and_met(void** state)
+{
+    (void)state;
+    static ty_element e;
+    for (size_t i = 0; i < sizeof solids / sizeof *solids; i++)
+        for (int v = 0; v < 3; v++)
+        {
+            ty_element_def def = def_of(solids[i]);
+            element_make(&def, v, &e);
+            ty_mesh_topology topology;
+            ty_mesh_analyse(e.mesh, &topology);
+            assert_true(topology.closed);
+            assert_int_equal(topology.components, 1);
+            assert_true(fabs(topology.volume / (double)e.volume - 1.0) < 1e-4);
+            assert_true(topology.convex || (solids[i] != TY_ELEMENT_ICE && solids[i] != TY_ELEMENT_BALL));
+            assert_true(e.fit_max <= def.fit * e.width);
+            assert_in_range(e.ball_count, 1, 140);
+            assert_non_null(e.mesh->curvature_1);
+            ty_element_term(&e);
+        }
+}
+
+// The worst distance over points that the fit has not seen: corners and middles of the triangles. Sharp corners of ice
+// lie between its samples.
+static void fit_holds_elsewhere(void** state)
+{
+    (void)state;
+    static ty_element e;
+    for (size_t i = 0; i < sizeof solids / sizeof *solids; i++)
+    {
+        ty_element_def def = def_of(solids[i]);
+        element_make(&def, 1, &e);
+        float worst = 0.0f;
+        for (uint32_t t = 0; t < e.mesh->triangle_count; t++)
+        {
+            const uint32_t* c = e.mesh->triangles[t];
+            ty_vec3 p = ty_add(e.mesh->positions[c[0]], ty_add(e.mesh->positions[c[1]], e.mesh->positions[c[2]]));
+            float least = TY_FLOAT_MAX;
+            for (int b = 0; b < e.ball_count; b++)
+                least = ty_min(least, ty_length(ty_mad(ty_neg(e.balls[b].center), p, 1.0f / 3.0f)) - e.balls[b].radius);
+            worst = ty_max(worst, fabsf(least));
+        }
+        assert_true(worst < 1.6f * def.fit * e.width);
+        ty_element_term(&e);
+    }
+}
+
+// A box of 2 x 1 x .5 about a point off the origin, in metres.
+static void box_write(const char* path, float scale, bool broken, bool open)
+{
+    ty_shape_def shape = ty_shape_def_default();
+    shape.kind = TY_SHAPE_BOX;
+    shape.size = ty_vec3_make(scale, 0.5f * scale, 0.25f * scale);
+    shape.rounding = 0.0f;
+    ty_mesh* mesh;
+    ty_error error;
+    assert_int_equal(ty_shape_create(&shape, &mesh, &error), TY_OK);
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        mesh->positions[i] = ty_add(mesh->positions[i], ty_vec3_make(scale, 2.0f * scale, 0.0f));
+    if (broken)
+        mesh->positions[2].y = NAN;
+    if (open)
+        mesh->triangle_count--;
+    assert_int_equal(ty_ply_write(path, mesh, &error), TY_OK);
+    ty_mesh_destroy(mesh);
+}
+
+static void mesh_weighs_as_a_box(void** state)
+{
+    (void)state;
+    static ty_element e;
+    char path[64];
+    (void)snprintf(path, sizeof path, "elements_box_%d.ply", (int)getpid());
+    box_write(path, 0.01f, false, false);
+    ty_element_def def = def_of(TY_ELEMENT_MESH);
+    def.mesh = path;
+    def.length = 0.01f; // half of the file's
+    element_make(&def, 0, &e);
+    assert_true(fabsf(e.volume / (0.01f * 0.005f * 0.0025f) - 1.0f) < 1e-4f);
+    assert_true(fabsf(e.width - 0.005f) < 1e-6f);
+    const double sides[3] = {0.01, 0.005, 0.0025};
+    for (int i = 0; i < 3; i++)
+    {
+        double j = sides[(i + 1) % 3], k = sides[(i + 2) % 3], inverse = 12.0 / (j * j + k * k);
+        assert_true(fabs((double)e.inverse_inertia[i] / inverse - 1.0) < 1e-4);
+        assert_true(fabs((double)e.inverse_inertia[3 + i] / inverse) < 1e-4);
+    }
+    ty_vec3 middle = ty_mul(ty_add(e.mesh->bounds.low, e.mesh->bounds.high), 0.5f);
+    assert_true(ty_length(middle) < 1e-7f);
+    ty_element_term(&e);
+    (void)remove(path);
+}
+
+static void same_again_and_each_its_own(void** state)
+{
+    (void)state;
+    static ty_element a, b;
+    for (size_t i = 0; i < sizeof solids / sizeof *solids; i++)
+    {
+        ty_element_def def = def_of(solids[i]);
+        element_make(&def, 2, &a);
+        element_make(&def, 2, &b);
+        assert_int_equal(a.ball_count, b.ball_count);
+        assert_memory_equal(a.balls, b.balls, sizeof a.balls[0] * (size_t)a.ball_count);
+        assert_memory_equal(a.mesh->positions, b.mesh->positions, sizeof(ty_vec3) * a.mesh->vertex_count);
+        ty_element_term(&b);
+        element_make(&def, 3, &b);
+        assert_true((a.volume == b.volume) == (solids[i] == TY_ELEMENT_BALL));
+        ty_element_term(&a);
+        ty_element_term(&b);
+    }
+}
+
+static void cultivars_differ_in_length(void** state)
+{
+    (void)state;
+    const double slender[] = {2.4, 4.3, 1.68, 2.06};
+    for (int c = 0; c < 4; c++)
+    {
+        ty_element_def def = def_of(TY_ELEMENT_RICE);
+        ty_error error;
+        def.cultivar = c;
+        assert_int_equal(ty_element_complete(&def, "element", &error), TY_OK);
+        assert_true(fabs((double)(def.length / def.width) / slender[c] - 1.0) < 0.02);
+    }
+    ty_element_def bean = def_of(TY_ELEMENT_BEAN);
+    ty_error error;
+    bean.length = 0.008f; // half as long, half as wide
+    assert_int_equal(ty_element_complete(&bean, "element", &error), TY_OK);
+    assert_true(fabsf(bean.width - 0.0041f) < 1e-6f);
+}
+
+static ty_aggregate_recipe mixed(ty_element_def* defs, int count)
+{
+    ty_aggregate_recipe r = ty_aggregate_recipe_default();
+    r.elements = (ty_param_list){defs, count};
+    r.container.shape.kind = TY_SHAPE_BOX;
+    r.container.kind = TY_CONTAINER_BOX;
+    r.container.shape.size = ty_vec3_make(0.025f, 0.02f, 0.025f);
+    r.fill.count = 120;
+    r.fill.density = 0.5f;
+    r.fill.sweeps = 150;
+    return r;
+}
+
+static void kinds_mix_by_ratio(void** state)
+{
+    (void)state;
+    ty_element_def defs[3] = {def_of(TY_ELEMENT_BALL), def_of(TY_ELEMENT_ROE), def_of(TY_ELEMENT_RICE)};
+    defs[0].length = 0.005f;
+    defs[0].ratio = 3.0f;
+    defs[2].ratio = 0.0f;
+    defs[2].variants = 2;
+    ty_aggregate_recipe r = mixed(defs, 3);
+    r.settle.rolling = 0.05f;
+    ty_aggregate* a = NULL;
+    ty_error error;
+    if (ty_aggregate_make(&r, NULL, &a, &error) != TY_OK)
+        fail_msg("%s", error.text);
+    int of[6] = {0};
+    assert_int_equal(a->prototype_count, 6); // ball, membrane, two grains, white, yolk
+    for (uint32_t i = 0; i < a->instance_count; i++)
+        of[a->prototype_index[i]]++;
+    assert_int_equal(of[0] + of[1], 120);
+    assert_in_range(of[0], 75, 105);
+    assert_int_equal(of[2] + of[3], 0);
+    assert_true(of[4] == of[1] && of[5] == of[1]);
+    assert_string_equal(a->prototypes[0]->slot_names[0], "ball");
+    assert_string_equal(a->prototypes[5]->slot_names[0], "yolk");
+    ty_aggregate_destroy(a);
+}
+
+static void assert_refused(const ty_aggregate_recipe* r, ty_status expected, const char* said)
+{
+    ty_aggregate* a = NULL;
+    ty_error error = {0};
+    assert_int_equal(ty_aggregate_make(r, NULL, &a, &error), expected);
+    assert_null(a);
+    if (!strstr(error.text, said))
+        fail_msg("'%s' is not in: %s", said, error.text);
+}
+
+static void impossible_ones_are_refused(void** state)
+{
+    (void)state;
+    char path[64];
+    (void)snprintf(path, sizeof path, "elements_bad_%d.ply", (int)getpid());
+    ty_element_def defs[2] = {def_of(TY_ELEMENT_BALL), def_of(TY_ELEMENT_MESH)};
+    defs[0].ratio = 0.0f;
+    ty_aggregate_recipe r = mixed(defs, 1);
+    assert_refused(&r, TY_BAD_INPUT, "elements: the ratios sum to 0");
+    defs[0].ratio = 1.0f;
+    defs[0].length = 0.06f;
+    assert_refused(&r, TY_BAD_INPUT, "60 x 60 mm");
+    r = mixed(defs + 1, 1);
+    assert_refused(&r, TY_BAD_INPUT, "elements[0].mesh: a path is needed");
+    defs[1].mesh = path;
+    assert_refused(&r, TY_BAD_FILE, "No such file");
+    box_write(path, 0.01f, false, true);
+    assert_refused(&r, TY_BAD_INPUT, "not a closed outward surface");
+    box_write(path, 0.01f, true, false);
+    assert_refused(&r, TY_BAD_FILE, "not finite");
+    box_write(path, 10.0f, false, false);
+    assert_refused(&r, TY_BAD_INPUT, "give a length of 0.1..500 mm");
+    (void)remove(path);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(closed_and_met),
+        cmocka_unit_test(fit_holds_elsewhere),
+        cmocka_unit_test(mesh_weighs_as_a_box),
+        cmocka_unit_test(same_again_and_each_its_own),
+        cmocka_unit_test(cultivars_differ_in_length),
+        cmocka_unit_test(kinds_mix_by_ratio),
+        cmocka_unit_test(impossible_ones_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
