@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <tsuya/base/log.h>
 #include <tsuya/base/memory.h>
 #include <tsuya/base/rng.h>
@@ -94,12 +95,24 @@ static subject subject_make(int count, int sweeps, ty_workers* workers)
     return s;
 }
 
-static double steps_time(ty_pile* pile, int steps, ty_workers* workers)
+static double cpu_now(void)
 {
-    double start = ty_time_now();
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+typedef struct spent
+{
+    double wall, cpu; // s a grain and substep
+} spent;
+
+static spent steps_time(ty_pile* pile, int steps, ty_workers* workers)
+{
+    double start = ty_time_now(), cpu = cpu_now(), each = 1.0 / steps / ty_pile_count(pile);
     for (int i = 0; i < steps; i++)
         ty_pile_step(pile, workers);
-    return (ty_time_now() - start) / steps / ty_pile_count(pile);
+    return (spent){each * (ty_time_now() - start), each * (cpu_now() - cpu)};
 }
 
 static int ascending(const void* a, const void* b)
@@ -131,17 +144,18 @@ static double count_measure(const settings* set, int count, double first, ty_wor
 {
     double start = ty_time_now();
     subject s = subject_make(count, set->sweeps, workers);
-    double filled = ty_time_now() - start, one[ROUNDS], many[ROUNDS];
+    double filled = ty_time_now() - start, one[ROUNDS], gain[ROUNDS];
     for (int r = 0; r < ROUNDS; r++)
     {
-        one[r] = steps_time(s.pile, set->steps, NULL);
-        many[r] = steps_time(s.pile, set->steps, workers);
+        spent alone = steps_time(s.pile, set->steps, NULL), shared = steps_time(s.pile, set->steps, workers);
+        one[r] = alone.cpu;
+        gain[r] = alone.wall / shared.wall;
     }
     qsort(one, ROUNDS, sizeof *one, ascending);
-    qsort(many, ROUNDS, sizeof *many, ascending);
-    double cost = one[ROUNDS / 2], shared = many[ROUNDS / 2];
-    printf("%8d  %8.2f  %8.3f  %8.3f  %6.2f  %6.2f  %8.0f\n", count, filled, cost * 1e6, shared * 1e6, cost / shared,
-           first > 0.0 ? cost / first : 1.0, 1e-6 * (double)ty_memory_peak());
+    qsort(gain, ROUNDS, sizeof *gain, ascending);
+    double cost = one[ROUNDS / 2];
+    printf("%8d  %8.2f  %8.3f  %6.2f  %6.2f  %8.0f\n", count, filled, cost * 1e6, first > 0.0 ? cost / first : 1.0,
+           gain[ROUNDS / 2], 1e-6 * (double)ty_memory_peak());
     if (set->rest)
         rest_print(s.pile, workers);
     fflush(stdout);
@@ -185,8 +199,7 @@ int main(int argc, char** argv)
     if (ty_workers_create(s.threads, &workers, &error) != TY_OK)
         die(error.text);
     grains_make();
-    printf("%8s  %8s  %8s  %6s%2d  %6s  %6s  %8s\n", "grains", "fill s", "us, 1", "us,", s.threads, "gain", "growth",
-           "peak MB");
+    printf("%8s  %8s  %8s  %6s  gain%2d  %8s\n", "grains", "fill s", "cpu us", "growth", s.threads, "peak MB");
     double first = 0.0;
     for (int i = 0; i < s.count_count; i++)
     {
