@@ -168,10 +168,8 @@ static void bridges_keep(ty_xpbd* x)
         while (old < x->old_couple_count && x->old_couples[old].b >= 0 &&
                (x->old_couples[old].a < c->a || (x->old_couples[old].a == c->a && x->old_couples[old].b < c->b)))
             old++;
-        const couple* o = &x->old_couples[old];
-        if (old == x->old_couple_count || o->a != c->a || o->b != c->b)
-            continue;
-        c->wet = o->wet;
+        const couple* o = old < x->old_couple_count ? &x->old_couples[old] : NULL;
+        c->wet = o && o->a == c->a && o->b == c->b && o->wet;
     }
 }
 
