@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `tsuya pack`, `tsuya fill` and `tsuya roots`: a recipe to a file, or to files by number.
 #include "cli.h"
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 #include <tsuya/base/file.h>
@@ -15,11 +16,11 @@ typedef struct product
     bool is_sequence, is_file;     // both: the output tells
 } product;
 
-static const char *const fill_extensions[] = {"exr", NULL}, *const roots_extensions[] = {"ply", NULL};
+static const char *const fill_extensions[] = {"exr", NULL}, *const mesh_extensions[] = {"ply", NULL};
 static const product products[] = {
     {"pack", "aggregate", ty_aggregate_endings, true, true},
     {"fill", "fill", fill_extensions, true, false},
-    {"roots", "roots", roots_extensions, false, true},
+    {"roots", "roots", mesh_extensions, false, true},
 };
 
 static const product* find_product(const ty_command* command)
@@ -69,14 +70,19 @@ static ty_status run(const ty_arguments* arguments)
     static ty_scene_arguments scene_arguments;
     const product* p = find_product(arguments->command);
     const char* output = ty_argument_text(arguments, "output", NULL);
-    ty_status status = check_output(arguments, p, output);
+    const product one = {p->command, p->kind, mesh_extensions, false, true};
+    bool alone = ty_argument_has(arguments, "element");
+    long element = 0;
+    ty_status status = alone ? ty_argument_int(arguments, "element", 1, INT_MAX, &element) : TY_OK;
+    if (status == TY_OK)
+        status = check_output(arguments, alone ? &one : p, output);
     if (status == TY_OK)
         status = ty_scene_arguments_read(arguments, &scene_arguments);
     if (status != TY_OK)
         return status;
     ty_error_list errors = {0};
     double start = ty_time_now();
-    status = ty_recipe_make(arguments->positional[0], p->kind, output, &scene_arguments.options, &errors);
+    status = ty_recipe_make(arguments->positional[0], p->kind, output, (int)element, &scene_arguments.options, &errors);
     ty_errors_log(&errors);
     ty_scene_arguments_term(&scene_arguments);
     if (status != TY_OK && status != TY_NOT_AT_REST)
@@ -93,7 +99,11 @@ static ty_status run(const ty_arguments* arguments)
         TY_SCENE_OPTIONS,                                                                                              \
     }
 
-OPTIONS(pack_options, "OUT.glb", "the aggregate to write; also .usda (USD), .ply (points) and .obj (one mesh)");
+static const ty_option pack_options[] = {
+    {"output", 'o', "OUT.glb", "the aggregate to write; also .usda (USD), .ply (points) and .obj (one mesh)"},
+    {"element", 0, "N", "instead one of its elements alone, from 1, as a mesh: .ply"},
+    TY_SCENE_OPTIONS,
+};
 OPTIONS(fill_options, "OUT.####.exr", "the frames to write, from 1");
 OPTIONS(roots_options, "OUT.ply", "the mesh to write");
 

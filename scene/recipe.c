@@ -216,11 +216,28 @@ static bool read_root(ty_loader* loader, const char* path, ty_recipe* recipe)
            loader->errors->count == first;
 }
 
-static ty_status make_and_write(ty_loader* loader, const ty_recipe* recipe, const char* output, ty_error* error)
+static ty_status write_element(const ty_recipe* recipe, int number, const char* key, const char* output,
+                               ty_error* error)
+{
+    ty_mesh* mesh;
+    ty_status status = recipe->generator->element(recipe->def, number, &mesh, error);
+    if (status != TY_OK)
+        return status;
+    sign(&mesh->recipe, &mesh->hash, ty_recipe_text(recipe), key);
+    status = ty_ply_write(output, mesh, error);
+    ty_mesh_destroy(mesh);
+    return status;
+}
+
+static ty_status make_and_write(ty_loader* loader, const ty_recipe* recipe, int element, const char* output,
+                                ty_error* error)
 {
     char key[33];
     ty_status status = ty_recipe_key(recipe, &loader->files, key, error);
-    return status == TY_OK ? ty_recipe_write(recipe, key, output, loader->options->workers, error) : status;
+    if (status != TY_OK)
+        return status;
+    return element > 0 ? write_element(recipe, element, key, output, error)
+                       : ty_recipe_write(recipe, key, output, loader->options->workers, error);
 }
 
 static bool is_kind(ty_loader* loader, const ty_recipe* recipe, const char* kind)
@@ -232,8 +249,8 @@ static bool is_kind(ty_loader* loader, const ty_recipe* recipe, const char* kind
     return false;
 }
 
-ty_status ty_recipe_make(const char* path, const char* kind, const char* output, const ty_scene_options* options,
-                         ty_error_list* errors)
+ty_status ty_recipe_make(const char* path, const char* kind, const char* output, int element,
+                         const ty_scene_options* options, ty_error_list* errors)
 {
     char folder[TY_PATH_MAX];
     ty_path_folder(path, folder);
@@ -246,7 +263,7 @@ ty_status ty_recipe_make(const char* path, const char* kind, const char* output,
     else if (!options->check_only)
     {
         ty_error error = {0};
-        status = make_and_write(loader, &recipe, output, &error);
+        status = make_and_write(loader, &recipe, element, output, &error);
         if (status != TY_OK)
             ty_error_list_add(errors, &error);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parameter tables of an aggregate's recipe and their defaults.
-#include <tsuya/generate/aggregate_recipe.h>
+#include "mixture.h"
 
 ty_aggregate_recipe ty_aggregate_recipe_default(void)
 {
@@ -365,10 +365,30 @@ static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_err
     return ty_aggregate_make(def, workers, &out->aggregate, error);
 }
 
+static ty_status element(const void* def, int number, ty_mesh** out, ty_error* error)
+{
+    mixture m;
+    *out = NULL;
+    ty_status status = mixture_init(def, &m, error);
+    if (status != TY_OK)
+        return status;
+    if (number < 1 || number > m.grain_count)
+        status =
+            ty_error_set(error, TY_BAD_INPUT, "there is no element %d: the recipe has 1..%d", number, m.grain_count);
+    else
+    {
+        *out = m.grains[number - 1].mesh;
+        m.grains[number - 1].mesh = NULL;
+    }
+    mixture_term(&m);
+    return status;
+}
+
 const ty_generator ty_aggregate_generator = {
     .kind = "aggregate",
-    .build_id = "aggregate 2",
+    .build_id = "aggregate 3",
     .product = TY_PRODUCT_AGGREGATE,
     .params = &recipe_table,
     .make = make,
+    .element = element,
 };

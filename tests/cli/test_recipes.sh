@@ -101,3 +101,14 @@ expect 130 timeout --preserve-status -s INT 1 "$tsuya" render scene.yaml -o stop
 absent stopped.exr
 ls -d cache/*.frames >again.txt
 same list.txt again.txt
+
+# One element alone, as a mesh.
+printf 'tsuya: 1\nkind: aggregate\nelement: { kind: bean, variants: 3 }\n' >bean.yaml
+expect 0 "$tsuya" pack bean.yaml --element 3 -o bean.ply
+expect 0 "$tsuya" info bean.ply
+expect 2 "$tsuya" pack bean.yaml --element 3 -o bean.glb
+says ".ply"
+expect 2 "$tsuya" pack bean.yaml --element 0 -o none.ply
+expect 3 "$tsuya" pack bean.yaml --element 4 -o none.ply
+says "the recipe has 1..3"
+absent none.ply

@@ -88,7 +88,7 @@ static void damage_is_made_good(void** state)
     const char* set = "count=1";
     ty_scene_options options = {.sets = &set, .set_count = 1};
     fixture_path("roots.yaml", recipe);
-    assert_int_equal(ty_recipe_make(recipe, "roots", path, &options, &fixture_errors), TY_OK);
+    assert_int_equal(ty_recipe_make(recipe, "roots", path, 0, &options, &fixture_errors), TY_OK);
     must_load(NULL, 1, 1);
     must_load(NULL, 0, 2);
 }
@@ -102,12 +102,13 @@ static void meshes_carry_their_recipe(void** state)
     ty_error error;
     write_all();
     fixture_path("roots.yaml", recipe);
-    assert_int_equal(ty_recipe_make(recipe, "roots", fixture_path("one.ply", one), &options, &fixture_errors), TY_OK);
+    assert_int_equal(ty_recipe_make(recipe, "roots", fixture_path("one.ply", one), 0, &options, &fixture_errors),
+                     TY_OK);
     assert_int_equal(ty_mesh_read(one, &mesh, &error), TY_OK);
     assert_non_null(strstr(mesh->recipe, "kind: roots\n"));
     fixture_write("again.yaml", mesh->recipe);
     fixture_path("again.yaml", recipe);
-    assert_int_equal(ty_recipe_make(recipe, NULL, fixture_path("two.ply", two), &options, &fixture_errors), TY_OK);
+    assert_int_equal(ty_recipe_make(recipe, NULL, fixture_path("two.ply", two), 0, &options, &fixture_errors), TY_OK);
     assert_int_equal(ty_mesh_read(two, &again, &error), TY_OK);
     assert_string_equal(again->hash, mesh->hash);
     assert_memory_equal(again->positions, mesh->positions, mesh->vertex_count * sizeof(ty_vec3));
@@ -134,7 +135,7 @@ static void places_are_told_apart(void** state)
     assert_true(fixture_has("scene.yaml", 4, 19, "is no mesh or shape"));
     fixture_clear();
     fixture_path("fill.yaml", recipe);
-    assert_int_equal(ty_recipe_make(recipe, "roots", fixture_path("x.ply", out), &options, &fixture_errors),
+    assert_int_equal(ty_recipe_make(recipe, "roots", fixture_path("x.ply", out), 0, &options, &fixture_errors),
                      TY_BAD_INPUT);
     assert_true(fixture_has("fill.yaml", 2, 7, "expected a recipe of kind 'roots', got 'fill'"));
     assert_false(ty_file_exists(out));

@@ -94,7 +94,8 @@ static void replace(const char* path)
     char other[TY_PATH_MAX];
     const char* variable = "n=10";
     ty_scene_options options = {.variables = &variable, .variable_count = 1};
-    assert_int_equal(ty_recipe_make(fixture_path("other.yaml", other), NULL, path, &options, &fixture_errors), TY_OK);
+    assert_int_equal(ty_recipe_make(fixture_path("other.yaml", other), NULL, path, 0, &options, &fixture_errors),
+                     TY_OK);
 }
 
 static void damaged_files_are_made_again(void** state)
@@ -178,12 +179,12 @@ static void recipes_are_made_to_files(void** state)
     fixture_path("heap.glb", out);
     options.sets = &wrong;
     options.set_count = 1;
-    assert_int_equal(ty_recipe_make(in, NULL, out, &options, &fixture_errors), TY_BAD_INPUT);
+    assert_int_equal(ty_recipe_make(in, NULL, out, 0, &options, &fixture_errors), TY_BAD_INPUT);
     assert_true(fixture_has("--set", 1, 6, "did you mean 'count'?"));
     assert_false(ty_file_exists(out));
     options.sets = &set;
     fixture_clear();
-    assert_int_equal(ty_recipe_make(in, NULL, out, &options, &fixture_errors), TY_OK);
+    assert_int_equal(ty_recipe_make(in, NULL, out, 0, &options, &fixture_errors), TY_OK);
     ty_aggregate* aggregate = NULL;
     ty_error error;
     assert_int_equal(ty_aggregate_read(out, NULL, &aggregate, &error), TY_OK);
@@ -195,7 +196,7 @@ static void recipes_are_made_to_files(void** state)
     char again[TY_PATH_MAX];
     options.set_count = 0;
     fixture_path("again.yaml", in);
-    assert_int_equal(ty_recipe_make(in, NULL, fixture_path("again.glb", again), &options, &fixture_errors), TY_OK);
+    assert_int_equal(ty_recipe_make(in, NULL, fixture_path("again.glb", again), 0, &options, &fixture_errors), TY_OK);
     ty_bytes one, two;
     assert_int_equal(ty_file_read(out, 1 << 26, &one, &error), TY_OK);
     assert_int_equal(ty_file_read(again, 1 << 26, &two, &error), TY_OK);
@@ -204,7 +205,7 @@ static void recipes_are_made_to_files(void** state)
     ty_bytes_term(&one);
     ty_bytes_term(&two);
     ty_aggregate_destroy(aggregate);
-    assert_int_equal(ty_recipe_make("/nowhere.yaml", NULL, again, &options, &fixture_errors), TY_BAD_FILE);
+    assert_int_equal(ty_recipe_make("/nowhere.yaml", NULL, again, 0, &options, &fixture_errors), TY_BAD_FILE);
 }
 
 int main(void)

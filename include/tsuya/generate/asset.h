@@ -49,6 +49,8 @@ typedef struct ty_generator
     // Deterministic for any worker count. On failure *out is as before. Cancelled: TY_INTERRUPTED.
     // TY_NOT_AT_REST still gives an aggregate (the best state, its metrics say so).
     ty_status (*make)(const void* def, ty_workers* workers, ty_made* out, ty_error* error);
+    // The mesh of one element alone, from 1: of aggregates; else NULL. The caller's; on failure *out is NULL.
+    ty_status (*element)(const void* def, int number, ty_mesh** out, ty_error* error);
 } ty_generator;
 
 const ty_generator* ty_generator_find(const char* kind); // NULL if unknown

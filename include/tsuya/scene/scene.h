@@ -334,8 +334,9 @@ static inline uint32_t ty_scene_material_at(const ty_scene_object* object, uint3
 }
 
 // Makes the asset of a recipe file and writes it to output, without the cache: an aggregate to a .glb, a mesh to a
-// .ply, frames to a pattern with ####. kind (NULL = any) is what the recipe has to be.
-TY_CHECKED ty_status ty_recipe_make(const char* recipe, const char* kind, const char* output,
+// .ply, frames to a pattern with ####. kind (NULL = any) is what the recipe has to be. element: above 0 = of an
+// aggregate's elements this one alone, as a .ply.
+TY_CHECKED ty_status ty_recipe_make(const char* recipe, const char* kind, const char* output, int element,
                                     const ty_scene_options* options, ty_error_list* errors);
 
 // The folder of made assets: given (may be NULL), else $TSUYA_CACHE, else $XDG_CACHE_HOME/tsuya, else ~/.cache/tsuya.
