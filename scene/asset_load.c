@@ -138,6 +138,13 @@ static void load_aggregate(ty_loader* loader, ty_asset* asset)
     const ty_mesh* prototype = asset->prototype >= 0 ? loader->assets[asset->prototype].mesh : NULL;
     if (asset->prototype >= 0 && !prototype)
         return; // its own error is reported
+    if (asset->aggregate_sequence)
+    {
+        ty_aggregate_sequence_load(loader, asset);
+        if (asset->aggregate)
+            keep_aggregate(loader, asset->aggregate);
+        return;
+    }
     if (ty_aggregate_read(asset->path, prototype, &asset->aggregate, &error) == TY_OK)
         keep_aggregate(loader, asset->aggregate);
     else

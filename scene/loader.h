@@ -46,11 +46,12 @@ typedef struct ty_asset
     bool used;
     bool is_texture; // some material uses it as one
     bool bounds_known;
-    ty_bounds bounds;                  // of everything, in the asset's own space
-    ty_mesh* mesh;                     // once loaded
-    ty_aggregate* aggregate;           // once loaded
-    const char* frames;                // RECIPE of frames: the pattern, once made
-    struct ty_mesh_sequence* sequence; // MESH of a pattern
+    ty_bounds bounds;                                 // of everything, in the asset's own space
+    ty_mesh* mesh;                                    // once loaded
+    ty_aggregate* aggregate;                          // once loaded
+    const char* frames;                               // RECIPE of frames: the pattern, once made
+    struct ty_mesh_sequence* sequence;                // MESH of a pattern
+    struct ty_aggregate_sequence* aggregate_sequence; // AGGREGATE of a pattern
     ty_gltf_scene* gltf; // GLTF, and MESH of such a file: opened ahead of reading the tables; owned by the scene
     int first_material;  // GLTF: of its materials among the scene's; the one for triangles without comes last
 } ty_asset;
@@ -242,6 +243,9 @@ void ty_sequence_check(ty_loader* loader, const ty_sequence_def* sequence, ty_pl
 // named, is reported.
 void ty_check_sequence_covers(ty_loader* loader, const ty_mip_texture_def* timing, int frame_count, ty_place place);
 void ty_check_keys_cover(ty_loader* loader); // named frames alone
+// Numbers of a pattern's files; false after a report of what is missing, which begins with what.
+bool ty_sequence_find_files(ty_loader* loader, const char* pattern, const ty_sequence_def* def, const char* what,
+                            ty_place place, int* first, int* count);
 void ty_mesh_sequence_read(ty_loader* loader, ty_asset* asset, const ty_mesh_asset_def* def, ty_node* pattern);
 void ty_mesh_sequence_load(ty_loader* loader, ty_asset* asset); // the mesh at the scene's seconds
 void ty_mesh_sequence_destroy(struct ty_mesh_sequence* sequence);
@@ -249,6 +253,11 @@ void ty_set_mesh_times(ty_loader* loader); // to the scene's seconds; what chang
 bool ty_mesh_has_changed(const ty_loader* loader, const ty_mesh* mesh);
 void ty_complete_mesh(const ty_loader* loader, ty_mesh* mesh); // what shading and tracing expect
 void ty_convert_colors(const ty_loader* loader, ty_mesh* mesh);
+// aggregate_sequence.c: aggregates that change with time
+void ty_aggregate_sequence_read(ty_loader* loader, ty_asset* asset, const ty_aggregate_asset_def* def,
+                                ty_node* pattern);
+void ty_aggregate_sequence_load(ty_loader* loader, ty_asset* asset); // the instances at the scene's seconds
+void ty_set_aggregate_times(ty_loader* loader);                      // to the scene's seconds, after the first load
 // gltf_expand.c: glTF files that assets name, opened; their cameras and lights into the tree where objects ask for them
 void ty_gltf_expand(ty_loader* loader);
 // gltf_text.c: a scene of a glTF file alone, with light and a camera where it has none
@@ -265,6 +274,7 @@ void ty_resolve_slots(ty_loader* loader);
 void ty_bind_objects(ty_loader* loader);
 // attributes, objects, trees, depth fields, the shading context
 void ty_build_attributes(ty_loader* loader);
+void ty_compute_height(const ty_aggregate* aggregate, float* height); // [instance_count]
 void ty_build_world(ty_loader* loader);
 bool ty_world_is_stale(const ty_loader* loader); // objects moved, or are seen by others
 void ty_rebuild_world(ty_loader* loader);        // the same objects, where they stand now

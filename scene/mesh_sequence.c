@@ -20,26 +20,27 @@ typedef struct ty_mesh_sequence
 // --- reading the asset ---
 
 // Every file from the first to the last must be there; which are not is one message.
-static bool find_files(ty_loader* loader, ty_mesh_sequence* s, const ty_sequence_def* def, ty_place place)
+bool ty_sequence_find_files(ty_loader* loader, const char* pattern, const ty_sequence_def* def, const char* what,
+                            ty_place place, int* first, int* count)
 {
     ty_frame_numbers numbers;
     ty_error error;
     char missing[256];
-    if (ty_frame_numbers_find(s->pattern, &numbers, &error) != TY_OK)
+    if (ty_frame_numbers_find(pattern, &numbers, &error) != TY_OK)
     {
-        ty_report_error(loader->errors, place, "mesh", &error);
+        ty_report_error(loader->errors, place, what, &error);
         return false;
     }
     bool is_given = def->last_frame >= def->first_frame;
     int last = is_given ? def->last_frame : numbers.numbers[numbers.count - 1];
-    s->first = is_given ? def->first_frame : numbers.numbers[0];
-    int count = ty_frame_numbers_missing(&numbers, s->first, last, missing, sizeof missing);
-    if (count > 0)
-        ty_report(loader->errors, place, TY_BAD_FILE, "mesh: '%s' lacks %d of its frames: %s", s->pattern, count,
+    *first = is_given ? def->first_frame : numbers.numbers[0];
+    int lacking = ty_frame_numbers_missing(&numbers, *first, last, missing, sizeof missing);
+    if (lacking > 0)
+        ty_report(loader->errors, place, TY_BAD_FILE, "%s: '%s' lacks %d of its frames: %s", what, pattern, lacking,
                   missing);
-    s->count = last - s->first + 1;
+    *count = last - *first + 1;
     ty_frame_numbers_term(&numbers);
-    return count == 0;
+    return lacking == 0;
 }
 
 void ty_mesh_sequence_read(ty_loader* loader, ty_asset* asset, const ty_mesh_asset_def* def, ty_node* pattern)
@@ -53,7 +54,7 @@ void ty_mesh_sequence_read(ty_loader* loader, ty_asset* asset, const ty_mesh_ass
     *s = (ty_mesh_sequence){
         .pattern = path, .timing = ty_sequence_timing(&def->sequence), .loaded = {-1, -1}, .shown = {-1, -1}};
     asset->path = path;
-    if (!find_files(loader, s, &def->sequence, asset->place))
+    if (!ty_sequence_find_files(loader, path, &def->sequence, "mesh", asset->place, &s->first, &s->count))
         return;
     ty_check_sequence_covers(loader, &s->timing, s->count, asset->place);
     asset->sequence = resources->sequences[resources->sequence_count++] = s;

@@ -36,7 +36,7 @@ static void frames_default(void* def)
 
 static void aggregate_default(void* def)
 {
-    *(ty_aggregate_asset_def*)def = (ty_aggregate_asset_def){0};
+    *(ty_aggregate_asset_def*)def = (ty_aggregate_asset_def){.sequence = {.fps = 24.0f, .last_frame = -1}};
 }
 
 static const ty_param visible_rows[] = {
@@ -119,7 +119,9 @@ static const char* const interpolations[] = {"none", "linear", NULL};
         SEQUENCE_ROW(type, loop, TY_PARAM_BOOL, "", 0, 0, NULL, "the first frame follows the last"),                   \
         SEQUENCE_ROW(type, mirror, TY_PARAM_BOOL, "", 0, 0, NULL, "back and forth"),                                   \
         SEQUENCE_ROW(type, hold, TY_PARAM_BOOL, "", 0, 0, NULL,                                                        \
-                     "the first before, the last after; none of the three: an error"),                                 \
+                     "the first before, the last after; none of the three: an error")
+#define INTERPOLATED_ROWS(type)                                                                                        \
+    SEQUENCE_ROWS(type),                                                                                               \
         SEQUENCE_ROW(type, interpolate, TY_PARAM_ENUM, "", 0, 0, interpolations, "between one frame and the next")
 
 static const ty_param frames_rows[] = {
@@ -128,7 +130,7 @@ static const ty_param frames_rows[] = {
     {"color_space", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_frames_asset_def, color_space),
      "of the images; if not given: guessed for colours, raw for numbers", false},
     {"wrap", TY_PARAM_ENUM, "", 0, 0, wraps, NULL, offsetof(ty_frames_asset_def, wrap), "outside 0..1", false},
-    SEQUENCE_ROWS(ty_frames_asset_def),
+    INTERPOLATED_ROWS(ty_frames_asset_def),
 };
 
 static const ty_param mesh_rows[] = {
@@ -137,14 +139,19 @@ static const ty_param mesh_rows[] = {
      "#### "
      "for the number (roots.####.ply) are animated, by what follows",
      true},
-    SEQUENCE_ROWS(ty_mesh_asset_def),
+    INTERPOLATED_ROWS(ty_mesh_asset_def),
 };
 
 static const ty_param aggregate_rows[] = {
     {"aggregate", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_aggregate_asset_def, aggregate),
-     "a recipe file (.yaml), a recipe in place, a .glb of instances, or .ply points", true},
+     "a recipe file (.yaml), a recipe in place, a .glb of instances, or .ply points; files with #### for the number "
+     "(heap.####.glb) of the same instances in each are animated, by what follows: shown is the file of the time or "
+     "the "
+     "last before it",
+     true},
     {"prototype", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_aggregate_asset_def, prototype),
      "for .ply points: the mesh or shape asset that stands at each", false},
+    SEQUENCE_ROWS(ty_aggregate_asset_def),
 };
 
 static const ty_param_table object_table = {"object",

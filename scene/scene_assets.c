@@ -90,18 +90,36 @@ static void read_shape(ty_loader* loader, ty_node* node, ty_asset* asset)
         asset->kind = TY_ASSET_SHAPE;
 }
 
+// Files of instances: one, or one a frame.
+static bool read_instances(ty_loader* loader, ty_node* node, ty_asset* asset)
+{
+    static const char* const skip[] = {"aggregate", NULL};
+    ty_node* value = ty_node_get(node, "aggregate");
+    bool is_sequence = ty_path_is_sequence(value->text);
+    ty_aggregate_asset_def def;
+    if (!ty_params_read(&loader->reader, node, ty_aggregate_asset_params(), &def, is_sequence ? skip : NULL))
+        return false;
+    for (int i = 0; !is_sequence && i < node->count; ++i)
+        if (strcmp(node->keys[i].text, "aggregate") != 0 && strcmp(node->keys[i].text, "prototype") != 0)
+            ty_report(loader->errors, node->keys[i].place, TY_BAD_INPUT,
+                      "'%s' belongs to sequences: aggregate: name.####.glb", node->keys[i].text);
+    asset->path = def.aggregate;
+    if (is_sequence)
+        ty_aggregate_sequence_read(loader, asset, &def, value);
+    if (asset->aggregate_sequence || !is_sequence)
+        asset->kind = TY_ASSET_AGGREGATE;
+    return asset->kind == TY_ASSET_AGGREGATE;
+}
+
 static void read_aggregate(ty_loader* loader, ty_node* node, ty_asset* asset)
 {
     ty_node* value = ty_node_get(node, "aggregate");
     ty_node* prototype = ty_node_get(node, "prototype");
     if (value->kind == TY_NODE_SCALAR)
     {
-        ty_aggregate_asset_def def;
-        if (!ty_params_read(&loader->reader, node, ty_aggregate_asset_params(), &def, NULL))
+        if (!read_instances(loader, node, asset))
             return;
-        asset->kind = TY_ASSET_AGGREGATE;
-        asset->path = def.aggregate;
-        bool is_points = strcmp(ty_path_extension(def.aggregate), "ply") == 0;
+        bool is_points = strcmp(ty_path_extension(value->text), "ply") == 0;
         if (is_points != (prototype != NULL))
             ty_report(loader->errors, prototype ? prototype->place : value->place, TY_BAD_INPUT,
                       is_points ? "points need a 'prototype': the mesh or shape asset that stands at each"

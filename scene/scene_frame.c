@@ -230,6 +230,7 @@ static void go_to(ty_loader* loader, double frame)
                 section_changed(&loader->timeline, TY_SECTION_TURNTABLE);
     rebuilds->cameras += view;
     read_changed(loader);
+    ty_set_aggregate_times(loader);
     ty_set_mesh_times(loader); // ahead of the poses: a camera may focus on what it shows
     ty_pose_scene(loader);
 }

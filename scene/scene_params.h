@@ -54,8 +54,9 @@ typedef struct ty_frames_asset_def
 
 typedef struct ty_aggregate_asset_def
 {
-    const char* aggregate; // path, or a recipe in place
+    const char* aggregate; // path, the pattern of a sequence, or a recipe in place
     const char* prototype; // asset
+    ty_sequence_def sequence;
 } ty_aggregate_asset_def;
 
 typedef struct ty_gltf_asset_def

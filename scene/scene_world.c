@@ -71,7 +71,7 @@ static void check_attribute(ty_loader* loader, const ty_placed_object* asset, co
 
 // Where the file of an aggregate says nothing else, `height` is where its instances stand in it: 0 the lowest, 1 the
 // highest.
-static void make_height(ty_aggregate* aggregate)
+void ty_compute_height(const ty_aggregate* aggregate, float* height)
 {
     float low = INFINITY, high = -INFINITY;
     for (uint32_t i = 0; i < aggregate->instance_count; ++i)
@@ -79,7 +79,6 @@ static void make_height(ty_aggregate* aggregate)
         low = ty_min(low, aggregate->transforms[i].t.y);
         high = ty_max(high, aggregate->transforms[i].t.y);
     }
-    float* height = ty_aggregate_add_attribute(aggregate, "height");
     for (uint32_t i = 0; i < aggregate->instance_count; ++i)
         height[i] = high > low ? (aggregate->transforms[i].t.y - low) / (high - low) : 1.0f;
 }
@@ -114,7 +113,7 @@ void ty_build_attributes(ty_loader* loader)
         const ty_placed_object* placed = &loader->placed[i];
         for (int a = 0; placed->aggregate && a < scene->attribute_count; ++a)
             if (strcmp(scene->attribute_names[a], "height") == 0 && !has_attribute(placed, "height"))
-                make_height(placed->aggregate);
+                ty_compute_height(placed->aggregate, ty_aggregate_add_attribute(placed->aggregate, "height"));
         set_attributes(loader, &scene->objects[i], placed->aggregate);
         for (int u = 0; meshes_of(placed).count > 0 && u < loader->use_count; ++u)
             if (shows_material(&scene->objects[i], loader->uses[u].material))
