@@ -4,6 +4,8 @@
 #include "grid.h"
 #include <string.h>
 
+#define REACH_SHARE 0.08f // of a body's radius, mean distance that a pile is looked ahead
+
 // --- candidates ---
 
 // What one piece of the bodies finds, in id order; pieces are joined in order, whoever found them.
@@ -286,15 +288,34 @@ static void lists_swap(ty_pile* pile)
     pile->touches = touches, pile->touch_capacity = touch_capacity, pile->touch_count = 0;
 }
 
-void pile_detect(ty_pile* pile, float margin, ty_workers* workers)
+// m/s, of a point of the body at most.
+static float body_speed(const ty_pile* pile, int i)
 {
-    const float ahead = 12.0f / pile->def.rate; // s that a body's speed is looked ahead
+    const motion* m = &pile->motions[i];
+    return ty_length(m->v) + ty_length(m->w) * pile->def.grains[pile->bodies[i].grain].radius;
+}
+
+// Seconds that a body's speed is looked ahead: twelve substeps each way, or fewer when the whole pile is fast, for
+// candidates grow with the cube of the reach. Single fast bodies reach far and keep the others from being searched.
+static float look_ahead(const ty_pile* pile)
+{
+    const float longest = 24.0f / pile->def.rate;
+    float speeds = 0.0f, radii = 0.0f;
     for (int i = 0; i < pile->count; i++)
     {
-        const motion* m = &pile->motions[i];
+        speeds += body_speed(pile, i);
+        radii += pile->def.grains[pile->bodies[i].grain].radius * pile->bodies[i].scale;
+    }
+    return speeds * longest > REACH_SHARE * radii ? REACH_SHARE * radii / speeds : longest;
+}
+
+void pile_detect(ty_pile* pile, float margin, ty_workers* workers)
+{
+    const float ahead = look_ahead(pile);
+    for (int i = 0; i < pile->count; i++)
+    {
         float radius = pile->def.grains[pile->bodies[i].grain].radius;
-        float speed = ty_length(m->v) + ty_length(m->w) * radius;
-        pile->poses[i].reach = ty_min(ty_max(margin, 2.0f * ahead * speed), margin + radius);
+        pile->poses[i].reach = ty_min(ty_max(margin, ahead * body_speed(pile, i)), margin + radius);
         pile->poses[i].seen = pile->bodies[i].position;
         pile->poses[i].seen_rotation = pile->bodies[i].rotation;
     }
