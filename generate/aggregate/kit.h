@@ -7,6 +7,10 @@
 typedef struct kit
 {
     const ty_aggregate_recipe* recipe; // complete
+    const ty_fill_def* fill;           // of the layer that is selected in mix
+    int layer;                         // which: 0 is the recipe's own fill
+    int wanted[MIXTURE_KINDS];         // bodies of each layer so far
+    double spread;                     // m^3 that all so far take, with the space between them
     ty_workers* workers;
     mixture mix;
     ty_container* container;
@@ -30,6 +34,15 @@ ty_bridge_def kit_bridge(const ty_aggregate_recipe* r); // the liquid between th
 // make_fill.c
 TY_CHECKED ty_status kit_fill(kit* k, ty_error* error);
 void kit_drop(kit* k, int count); // grains fall onto the pile: in layers over its planned surface, not touching
+// The count that fill asks for in the space that is left over what lies; place is before "fill." in the recipe.
+TY_CHECKED ty_status kit_count(kit* k, const char* place, float inset, int* out, ty_error* error);
+
+// make_layers.c
+TY_CHECKED ty_status layers_check(const ty_aggregate_recipe* r, ty_error* error);
+// Selects the layer and lets it fall onto the pile.
+TY_CHECKED ty_status kit_layer(kit* k, int layer, ty_error* error);
+// As many new bodies of each layer fall onto the pile as are missing.
+void kit_refill(kit* k);
 
 // xpbd_settle.c: settles or presses the pile as elastic bodies for the recipe's time; k->frames is where they stand.
 TY_CHECKED ty_status kit_soften(kit* k, ty_pile_metrics* metrics, ty_error* error);

@@ -24,7 +24,7 @@ static ty_quat rotation_draw(const ty_fill_def* fill, float steepest, ty_rng* rn
 
 ty_body kit_body(kit* k, ty_vec3 position, float steepest)
 {
-    ty_body body = {.position = position, .rotation = rotation_draw(&k->recipe->fill, steepest, &k->rng)};
+    ty_body body = {.position = position, .rotation = rotation_draw(k->fill, steepest, &k->rng)};
     mixture_draw(&k->mix, &k->rng, &body);
     return body;
 }
@@ -37,7 +37,7 @@ static ty_status recipe_check(const ty_aggregate_recipe* r, ty_error* error)
         return ty_error_set(error, TY_BAD_INPUT, "fill.count: %d; it lies in 1..%d", r->fill.count, TY_FILL_MOST);
     if (!(r->fill.density >= 0.1f && r->fill.density <= 0.95f))
         return ty_error_set(error, TY_BAD_INPUT, "fill.density: %g; it lies in 0.1..0.95", (double)r->fill.density);
-    return TY_OK;
+    return layers_check(r, error);
 }
 
 static ty_status container_check(const kit* k, ty_error* error)
@@ -69,7 +69,7 @@ static ty_status pile_rest(kit* k, ty_error* error)
         end = ty_pile_settle(k->pile, k->recipe->settle.max_seconds, k->workers, &lost);
         k->lost += lost;
         k->replaced += lost;
-        kit_drop(k, lost);
+        kit_refill(k);
     }
     k->rest = end == TY_PILE_REST;
     if (end == TY_PILE_CANCELED)
@@ -105,7 +105,7 @@ static void floating_replace(kit* k, bool* held)
         held[i] = !held[i];
     ty_pile_remove(k->pile, held);
     k->replaced += count - ty_pile_count(k->pile);
-    kit_drop(k, count - ty_pile_count(k->pile));
+    kit_refill(k);
 }
 
 // Polishes a copy; where a grain floats after that, the unpolished pile settles on with that grain replaced or stirred.
@@ -197,6 +197,7 @@ static ty_affine body_transform(const ty_body* b)
 
 static ty_status result_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error)
 {
+    mixture_select(&k->mix, 0); // what is relative to a size is so to that of the lowest layer
     uint32_t count = (uint32_t)ty_pile_count(k->pile);
     const ty_body* bodies = ty_pile_bodies(k->pile);
     uint32_t* owners;
@@ -247,8 +248,11 @@ static ty_status pile_make(kit* k, ty_error* error)
     ty_status status = mixture_init(k->recipe, &k->mix, error);
     if (status == TY_OK)
         status = ty_container_create(&k->recipe->container, k->workers, &k->container, error);
-    if (status == TY_OK)
+    for (int layer = k->recipe->layers.count; layer >= 0 && status == TY_OK; layer--)
+    {
+        mixture_select(&k->mix, layer); // layer 0 in the end
         status = container_check(k, error);
+    }
     if (status != TY_OK)
         return status;
     ty_pile_def def = ty_pile_def_default();
@@ -274,6 +278,12 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
     double filled = ty_time_now();
     ty_pile_metrics metrics = {0};
     bool elastic = k->recipe->settle.solver == TY_SOLVER_XPBD;
+    for (int layer = 1; layer <= k->recipe->layers.count && status == TY_OK; layer++)
+    {
+        status = pile_rest(k, error); // what lies below
+        if (status == TY_OK)
+            status = kit_layer(k, layer, error);
+    }
     if (status == TY_OK && !elastic)
         status = pile_finish(k, &metrics, error);
     if (status == TY_OK && (elastic || k->recipe->press.strain > 0.0f))
@@ -357,6 +367,7 @@ static ty_status recipe_make(const void* def, ty_workers* workers, ty_aggregate*
         return status;
     kit* k = TY_ALLOC(kit, 1);
     k->recipe = &recipe;
+    k->fill = &recipe.fill;
     k->workers = workers;
     k->rng = ty_rng_make(recipe.seed, 0x626f6479, 0);
     status = sink ? film_make(k, sink, error) : kit_make(k, out, error);

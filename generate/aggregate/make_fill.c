@@ -12,6 +12,7 @@ void kit_drop(kit* k, int count)
     float length = 1.1f * k->mix.longest * (1.0f + 2.0f * k->mix.variation);
     ty_bounds interior = ty_container_interior(k->container);
     ty_vec3 center = ty_mul(ty_add(interior.low, interior.high), 0.5f);
+    float rise = ty_max(0.55f * length, k->mix.widest > 0.75f * k->mix.longest ? length : 0.0f); // round ones: more
     float radius = 0.58f * ty_min(k->top.radius_x, k->top.radius_z), above = 0.6f * length;
     for (int i = 0; i < ty_pile_count(k->pile); i++) // over all that is there already
     {
@@ -31,8 +32,8 @@ void kit_drop(kit* k, int count)
         if (x * x + z * z > radius * radius || chance > 0.85f) // some places stay empty, so that no lattice shows
             continue;
         ty_vec3 p = {center.x + x, 0.0f, center.z + z};
-        p.y = ty_fill_top_height(&k->top, p) + above + layers * 0.55f * length;
-        ty_body body = kit_body(k, p, ty_min(k->recipe->fill.tilt, FALLING_TILT));
+        p.y = ty_fill_top_height(&k->top, p) + above + layers * rise;
+        ty_body body = kit_body(k, p, ty_min(k->fill->tilt, FALLING_TILT));
         ty_pile_add(k->pile, &body, 1);
         placed++;
     }
@@ -77,7 +78,8 @@ static void thesis(kit* k, const ty_vec3* points, int count, double volume)
 static ty_status lattice(kit* k, ty_vec3* points, int count, ty_error* error)
 {
     ty_vec3 pitch = {0.0f, 0.0f, 0.0f};
-    for (int i = 0; i < k->mix.grain_count; i++)
+    const mixture_kind* last = &k->mix.kinds[k->mix.end - 1];
+    for (int i = 0; i < last->first + last->count; i++) // of layer 0
     {
         ty_vec3 size = ty_sub(k->mix.grains[i].mesh->bounds.high, k->mix.grains[i].mesh->bounds.low);
         pitch = ty_vec3_make(ty_max(pitch.x, size.x), ty_max(pitch.y, size.y), ty_max(pitch.z, size.z));
@@ -98,24 +100,24 @@ static ty_status lattice(kit* k, ty_vec3* points, int count, ty_error* error)
 
 // --- how many, how high ---
 
-// With a level or a density as the target, the count that goes with it.
-static ty_status count_find(kit* k, float inset, ty_error* error)
+ty_status kit_count(kit* k, const char* place, float inset, int* out, ty_error* error)
 {
-    const ty_fill_def* fill = &k->recipe->fill;
-    k->count = fill->count;
+    const ty_fill_def* fill = k->fill;
+    *out = fill->count;
     if (fill->target == TY_FILL_COUNT)
         return TY_OK;
     float level = fill->target == TY_FILL_LEVEL ? fill->level : 0.0f;
-    double space = ty_fill_space(k->container, level, fill->heap, inset);
+    double space = ty_fill_space(k->container, level, fill->heap, inset) - k->spread;
     double count = space * (double)fill->density / (double)k->mix.volume;
     if (count >= 1.0 && count <= TY_FILL_MOST)
     {
-        k->count = (int)count;
+        *out = (int)count;
         return TY_OK;
     }
-    return ty_error_set(
-        error, TY_BAD_INPUT, "fill.%s: the space of %.4g cm^3 takes %.4g grains at a density of %g; 1..%d can be made",
-        fill->target == TY_FILL_LEVEL ? "level" : "density", space * 1e6, count, (double)fill->density, TY_FILL_MOST);
+    return ty_error_set(error, TY_BAD_INPUT,
+                        "%sfill.%s: the space of %.4g cm^3 takes %.4g grains at a density of %g; 1..%d can be made",
+                        place, fill->target == TY_FILL_LEVEL ? "level" : "density", space * 1e6, count,
+                        (double)fill->density, TY_FILL_MOST);
 }
 
 static ty_status kit_start(kit* k, int count, double volume, float inset, ty_error* error)
@@ -142,7 +144,7 @@ ty_status kit_fill(kit* k, ty_error* error)
 {
     const ty_fill_def* fill = &k->recipe->fill;
     float inset = 0.25f * k->mix.width;
-    ty_status status = count_find(k, inset, error);
+    ty_status status = kit_count(k, "", inset, &k->count, error);
     if (status != TY_OK)
         return status;
     int count = k->count;
@@ -163,6 +165,7 @@ ty_status kit_fill(kit* k, ty_error* error)
            ty_pile_count(k->pile), k->removed, (double)k->start.overlap_max * 100.0,
            (double)k->start.overlap_mean * 100.0);
     kit_drop(k, k->count - count);
-    k->count = ty_pile_count(k->pile);
+    k->count = k->wanted[0] = ty_pile_count(k->pile);
+    k->spread = volume * (double)k->count / (double)count;
     return TY_OK;
 }

@@ -5,46 +5,63 @@
 #include <stdio.h>
 #include <string.h>
 
-enum
+// The elements of layer 0, which is the recipe's own, or of a later one.
+typedef struct choice
 {
-    MAX_KINDS = 16,
-};
+    const ty_element_def* defs;
+    int count, layer;
+    bool is_list;
+    char place[32]; // in the recipe, before "element"
+} choice;
 
-static ty_status shares_set(mixture* m, const ty_element_def* defs, bool is_list, ty_error* error)
+static choice choice_of(const ty_aggregate_recipe* recipe, int layer)
+{
+    choice c = {.layer = layer};
+    const ty_element_def* one = &recipe->element;
+    ty_param_list list = recipe->elements;
+    if (layer > 0)
+    {
+        const ty_layer_def* def = (const ty_layer_def*)recipe->layers.items + (layer - 1);
+        one = &def->element;
+        list = def->elements;
+        (void)snprintf(c.place, sizeof c.place, "layers[%d].", layer - 1);
+    }
+    c.is_list = list.count > 0;
+    c.defs = c.is_list ? list.items : one;
+    c.count = c.is_list ? list.count : 1;
+    return c;
+}
+
+static ty_status shares_set(mixture_kind* kinds, const choice* c, ty_error* error)
 {
     double sum = 0.0;
-    for (int i = 0; i < m->kind_count; i++)
-        sum += is_list ? (double)defs[i].ratio : 1.0;
+    for (int i = 0; i < c->count; i++)
+        sum += c->is_list ? (double)c->defs[i].ratio : 1.0;
     if (!(sum > 0.0))
-        return ty_error_set(error, TY_BAD_INPUT, "elements: the ratios sum to %g; at least one is above 0", sum);
-    for (int i = 0; i < m->kind_count; i++)
-        m->kinds[i].share = is_list ? (float)((double)defs[i].ratio / sum) : 1.0f;
+        return ty_error_set(error, TY_BAD_INPUT, "%selements: the ratios sum to %g; at least one is above 0", c->place,
+                            sum);
+    for (int i = 0; i < c->count; i++)
+        kinds[i].share = c->is_list ? (float)((double)c->defs[i].ratio / sum) : 1.0f;
     return TY_OK;
 }
 
-static ty_status kinds_complete(mixture* m, const ty_element_def* defs, bool is_list, ty_error* error)
+static ty_status kinds_complete(mixture* m, const choice* c, ty_error* error)
 {
-    for (int i = 0; i < m->kind_count; i++)
+    mixture_kind* kinds = m->kinds + m->kind_count;
+    ty_status status = shares_set(kinds, c, error);
+    for (int i = 0; i < c->count && status == TY_OK; i++)
     {
-        char name[32] = "element";
-        mixture_kind* kind = &m->kinds[i];
-        if (is_list)
-            (void)snprintf(name, sizeof name, "elements[%d]", i);
-        kind->def = defs[i];
-        ty_status status = ty_element_complete(&kind->def, name, error);
-        if (status != TY_OK)
-            return status;
-        kind->first = m->grain_count;
-        kind->count = kind->def.variants;
-        m->grain_count += kind->count;
-        m->width += kind->share * kind->def.width;
-        m->length += kind->share * kind->def.length;
-        m->thickness += kind->share * kind->def.thickness;
-        m->widest = ty_max(m->widest, kind->def.width);
-        m->longest = ty_max(m->longest, kind->def.length);
-        m->variation = ty_max(m->variation, kind->def.variation);
+        char name[64];
+        (void)snprintf(name, sizeof name, c->is_list ? "%selements[%d]" : "%selement", c->place, i);
+        kinds[i].def = c->defs[i];
+        kinds[i].layer = c->layer;
+        status = ty_element_complete(&kinds[i].def, name, error);
+        kinds[i].first = m->grain_count;
+        kinds[i].count = kinds[i].def.variants;
+        m->grain_count += kinds[i].count;
+        m->kind_count++;
     }
-    return TY_OK;
+    return status;
 }
 
 static ty_status grains_make(mixture* m, ty_seed seed, ty_error* error)
@@ -63,35 +80,63 @@ static ty_status grains_make(mixture* m, ty_seed seed, ty_error* error)
             if (status != TY_OK)
                 return status;
             m->kind_of[kind->first + v] = i;
-            m->volume += kind->share * (grain->volume / (float)kind->count);
         }
     return TY_OK;
 }
 
+void mixture_select(mixture* m, int layer)
+{
+    m->volume = m->width = m->length = m->thickness = m->widest = m->longest = m->variation = 0.0f;
+    for (m->first = 0; m->kinds[m->first].layer < layer; m->first++)
+        ;
+    for (m->end = m->first; m->end < m->kind_count && m->kinds[m->end].layer == layer; m->end++)
+    {
+        const mixture_kind* kind = &m->kinds[m->end];
+        m->width += kind->share * kind->def.width;
+        m->length += kind->share * kind->def.length;
+        m->thickness += kind->share * kind->def.thickness;
+        m->widest = ty_max(m->widest, kind->def.width);
+        m->longest = ty_max(m->longest, kind->def.length);
+        m->variation = ty_max(m->variation, kind->def.variation);
+        for (int v = kind->first; v < kind->first + kind->count; v++)
+            m->volume += kind->share * (m->grains[v].volume / (float)kind->count);
+    }
+}
+
 ty_status mixture_init(const ty_aggregate_recipe* recipe, mixture* out, ty_error* error)
 {
-    bool is_list = recipe->elements.count > 0;
-    const ty_element_def* defs = is_list ? recipe->elements.items : &recipe->element;
-    *out = (mixture){.kind_count = is_list ? recipe->elements.count : 1};
-    if (out->kind_count > MAX_KINDS)
-        return ty_error_set(error, TY_BAD_INPUT, "elements: %d kinds; at most %d mix", out->kind_count, MAX_KINDS);
-    out->kinds = TY_ALLOC(mixture_kind, out->kind_count);
-    ty_status status = shares_set(out, defs, is_list, error);
-    if (status == TY_OK)
-        status = kinds_complete(out, defs, is_list, error);
+    *out = (mixture){0};
+    int64_t kinds = 0;
+    for (int layer = 0; layer <= recipe->layers.count; layer++)
+        kinds += choice_of(recipe, layer).count;
+    if (kinds > MIXTURE_KINDS)
+        return ty_error_set(error, TY_BAD_INPUT, "%s: %lld kinds; at most %d mix",
+                            recipe->layers.count > 0 ? "layers" : "elements", (long long)kinds, MIXTURE_KINDS);
+    out->kinds = TY_ALLOC(mixture_kind, (int)kinds);
+    ty_status status = TY_OK;
+    for (int layer = 0; layer <= recipe->layers.count && status == TY_OK; layer++)
+    {
+        choice c = choice_of(recipe, layer);
+        status = kinds_complete(out, &c, error);
+    }
     if (status == TY_OK)
         status = grains_make(out, recipe->seed, error);
-    if (status != TY_OK)
+    if (status == TY_OK)
+        mixture_select(out, 0);
+    else
         mixture_term(out);
     return status;
 }
 
 bool mixture_holds_roe(const ty_aggregate_recipe* recipe)
 {
-    const ty_element_def* defs = recipe->elements.items;
-    bool holds = recipe->elements.count == 0 && recipe->element.kind == TY_ELEMENT_ROE;
-    for (int i = 0; i < recipe->elements.count; i++)
-        holds |= defs[i].kind == TY_ELEMENT_ROE;
+    bool holds = false;
+    for (int layer = 0; layer <= recipe->layers.count; layer++)
+    {
+        choice c = choice_of(recipe, layer);
+        for (int i = 0; i < c.count; i++)
+            holds |= c.defs[i].kind == TY_ELEMENT_ROE;
+    }
     return holds;
 }
 
@@ -107,9 +152,9 @@ void mixture_term(mixture* m)
 
 static const mixture_kind* kind_draw(const mixture* m, ty_rng* rng)
 {
-    const mixture_kind* kind = m->kinds;
-    float left = m->kind_count > 1 ? ty_rng_float(rng) : 0.0f;
-    for (int i = 0; i < m->kind_count; left -= m->kinds[i++].share)
+    const mixture_kind* kind = &m->kinds[m->first];
+    float left = m->end - m->first > 1 ? ty_rng_float(rng) : 0.0f;
+    for (int i = m->first; i < m->end; left -= m->kinds[i++].share)
         if (m->kinds[i].share > 0.0f)
         {
             kind = &m->kinds[i];
@@ -189,7 +234,7 @@ ty_aggregate* mixture_write(mixture* m, ty_seed seed, const ty_body* bodies, con
                             uint32_t** owners)
 {
     uint32_t eggs = 0, egg = 0;
-    int prototypes = m->grain_count, further[MAX_KINDS];
+    int prototypes = m->grain_count, further[MIXTURE_KINDS];
     for (uint32_t i = 0; i < count; i++)
         eggs += is_roe(m, bodies[i].grain);
     for (int i = 0; i < m->kind_count; i++)

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The elements of a recipe, one kind or several by ratio, each in its variants.
+// The elements of a recipe, in each layer one kind or several by ratio, each in its variants.
 #pragma once
 #include <tsuya/generate/aggregate_recipe.h>
+
+enum
+{
+    MIXTURE_KINDS = 16, // at most, of all layers
+};
 
 typedef struct mixture_kind
 {
     ty_element_def def; // complete
     int first, count;   // of its variants among the grains
-    float share;        // of the bodies, all together 1
+    int layer;          // 0: the recipe's own elements
+    float share;        // of the bodies of its layer, all together 1
 } mixture_kind;
 
 typedef struct mixture
@@ -17,6 +23,7 @@ typedef struct mixture
     ty_element* grains; // all variants of all kinds
     int grain_count;
     int* kind_of;                   // [grain_count]
+    int first, end;                 // kinds of the layer that is selected; what follows is of it
     float volume;                   // m^3, of the mean body
     float width, length, thickness; // m, of the mean body
     float widest, longest;          // m, of the largest kind
@@ -27,6 +34,7 @@ typedef struct mixture
 TY_CHECKED ty_status mixture_init(const ty_aggregate_recipe* recipe, mixture* out, ty_error* error);
 void mixture_term(mixture* m);
 bool mixture_holds_roe(const ty_aggregate_recipe* recipe);
+void mixture_select(mixture* m, int layer); // from now on draws are of that layer; it is 0 at first
 
 // Which grain a body is, and its own size: chance by shares. Equal draws whatever the kinds are when there is one.
 void mixture_draw(const mixture* m, ty_rng* rng, ty_body* body);

@@ -235,6 +235,61 @@ static const ty_param_table fill_table = {"aggregate.fill",    "How many grains,
                                           sizeof(ty_fill_def), fill_set_default,
                                           fill_rows,           TY_PARAM_COUNT(fill_rows)};
 
+static void layer_fill_set_default(void* def)
+{
+    ty_fill_def fill = ty_aggregate_recipe_default().fill;
+    fill.count = 100;
+    *(ty_fill_def*)def = fill;
+}
+
+#define OWNER ty_fill_def
+static const ty_param layer_fill_rows[] = {
+    {"target", TY_PARAM_ENUM, "", 0, 0, fill_targets, NULL, offsetof(OWNER, target),
+     "what is asked for: a count; or a level or a density, which give the count", false},
+    FIELD("count", TY_PARAM_INT, "", 1, TY_FILL_MOST, count, "elements of this layer, with target count"),
+    FIELD("density", TY_PARAM_FLOAT, "", 0.1, 0.95, density, "volume share of the elements once they lie"),
+    FIELD("level", TY_PARAM_FLOAT, "mm", 0, 1e6, level,
+          "with target level: up to where, over the lowest point inside; 0 = the rim"),
+    FIELD("heap", TY_PARAM_FLOAT, "mm", 0, 1000, heap, "height of the crown of all that lies by then"),
+    FIELD("tilt", TY_PARAM_FLOAT, "deg", 0, 90, tilt, "largest angle with the horizontal as they fall, at most 14.3"),
+    FIELD("roll", TY_PARAM_FLOAT, "deg", 0, 180, roll, "largest turn about its own length as they fall"),
+};
+#undef OWNER
+
+static const ty_param_table layer_fill_table = {"aggregate.layers.fill", "How many come, or how high they lie.",
+                                                sizeof(ty_fill_def),     layer_fill_set_default,
+                                                layer_fill_rows,         TY_PARAM_COUNT(layer_fill_rows)};
+
+static void layer_set_default(void* def)
+{
+    ty_layer_def layer = {.element = ty_element_def_default()};
+    layer_fill_set_default(&layer.fill);
+    *(ty_layer_def*)def = layer;
+}
+
+#define OWNER ty_layer_def
+static const ty_param layer_rows[] = {
+    {"element", TY_PARAM_GROUP, "", 0, 0, NULL, &grain_table, offsetof(OWNER, element), "what comes", false},
+    {"elements", TY_PARAM_LIST, "", 0, 0, NULL, &grain_table, offsetof(OWNER, elements),
+     "kinds that are mixed by ratio, in place of element", false},
+    {"fill", TY_PARAM_GROUP, "", 0, 0, NULL, &layer_fill_table, offsetof(OWNER, fill), "how many, how high", false},
+};
+#undef OWNER
+
+static const ty_param_table layer_table = {
+    "aggregate.layers",
+    "What comes onto the fill when that is at rest: the elements fall from above, and all settle again. A mesh without "
+    "slots has one of its kind's name, so that each kind can have its own material.",
+    sizeof(ty_layer_def),
+    layer_set_default,
+    layer_rows,
+    TY_PARAM_COUNT(layer_rows)};
+
+const ty_param_table* ty_layer_params(void)
+{
+    return &layer_table;
+}
+
 static const char* const solvers[] = {"impulse", "xpbd", NULL};
 
 static void settle_set_default(void* def)
@@ -337,6 +392,8 @@ static const ty_param recipe_rows[] = {
      false},
     GROUP(container, &container_table, "what the grains lie in"),
     GROUP(fill, &fill_table, "how many, how dense, how high"),
+    {"layers", TY_PARAM_LIST, "", 0, 0, NULL, &layer_table, offsetof(OWNER, layers),
+     "what comes onto that in an open container, one after the other; with element, at most 16 kinds in all", false},
     GROUP(settle, &settle_table, "how they come to rest"),
     GROUP(press, &press_table, "a mould that closes on them"),
     GROUP(moisture, &wetness_table, "the attribute moisture"),

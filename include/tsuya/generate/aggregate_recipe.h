@@ -46,6 +46,15 @@ typedef struct ty_fill_def
     ty_thesis_def thesis;
 } ty_fill_def;
 
+// What comes onto a pile that is at rest already: its elements fall from above, then all settle again. Of fill: target,
+// count, density, level, heap, tilt and roll.
+typedef struct ty_layer_def
+{
+    ty_element_def element;
+    ty_param_list elements; // of ty_element_def, borrowed: as the recipe's
+    ty_fill_def fill;
+} ty_layer_def;
+
 typedef enum ty_solver
 {
     TY_SOLVER_IMPULSE, // rigid elements, impulses kept from substep to substep: comes to rest
@@ -93,6 +102,7 @@ typedef struct ty_aggregate_recipe
     ty_param_list elements; // of ty_element_def, borrowed: kinds by ratio, in place of element where there are any
     ty_container_def container;
     ty_fill_def fill;
+    ty_param_list layers; // of ty_layer_def, borrowed: what comes onto the fill, from below to the top
     ty_settle_def settle;
     ty_press_def press;
     ty_wetness_def moisture;
@@ -102,6 +112,7 @@ typedef struct ty_aggregate_recipe
 
 ty_aggregate_recipe ty_aggregate_recipe_default(void); // 2,000 grains of cooked japonica rice in the default bowl
 const ty_param_table* ty_aggregate_recipe_params(void);
+const ty_param_table* ty_layer_params(void);
 // def is a ty_aggregate_recipe; on failure *out is NULL, else as ty_generator's make.
 TY_CHECKED ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate** out, ty_error* error);
 // Frame by frame instead: the first is the fill before it moves. recipe.animate.frames is at least 1; nothing is

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Layers of an aggregate: each falls onto what lies at rest below, and what is lost of one comes again.
+#include "kit.h"
+#include <stdio.h>
+#include <tsuya/base/log.h>
+
+static const ty_layer_def* layer_def(const ty_aggregate_recipe* r, int layer)
+{
+    return (const ty_layer_def*)r->layers.items + (layer - 1);
+}
+
+ty_status layers_check(const ty_aggregate_recipe* r, ty_error* error)
+{
+    if (r->layers.count == 0)
+        return TY_OK;
+    for (int i = 0; i < r->layers.count; i++)
+    {
+        const ty_fill_def* fill = &layer_def(r, i + 1)->fill;
+        if (fill->count < 1 || fill->count > TY_FILL_MOST)
+            return ty_error_set(error, TY_BAD_INPUT, "layers[%d].fill.count: %d; it lies in 1..%d", i, fill->count,
+                                TY_FILL_MOST);
+        if (!(fill->density >= 0.1f && fill->density <= 0.95f))
+            return ty_error_set(error, TY_BAD_INPUT, "layers[%d].fill.density: %g; it lies in 0.1..0.95", i,
+                                (double)fill->density);
+    }
+    if (r->settle.solver == TY_SOLVER_XPBD)
+        return ty_error_set(error, TY_BAD_INPUT, "layers: they settle as rigid elements; take solver impulse");
+    if (r->animate.frames > 0)
+        return ty_error_set(error, TY_BAD_INPUT, "layers: a film has the same elements in all frames; take frames 0");
+    return TY_OK;
+}
+
+ty_status kit_layer(kit* k, int layer, ty_error* error)
+{
+    char place[32];
+    (void)snprintf(place, sizeof place, "layers[%d].", layer - 1);
+    if (!ty_container_is_open(k->container))
+        return ty_error_set(error, TY_BAD_INPUT, "%sfill: it falls from above; the container has no opening", place);
+    mixture_select(&k->mix, layer);
+    k->layer = layer;
+    k->fill = &layer_def(k->recipe, layer)->fill;
+    float inset = 0.25f * k->mix.width;
+    int count;
+    ty_status status = kit_count(k, place, inset, &count, error);
+    if (status != TY_OK)
+        return status;
+    double volume = (double)count * (double)k->mix.volume / (double)k->fill->density, capacity;
+    status = ty_fill_plan(k->container, k->spread + volume, k->fill->heap, inset, &k->top, &capacity, error);
+    if (status != TY_OK)
+    {
+        int most = (int)((capacity - k->spread) / volume * (double)count);
+        return ty_error_set(error, status,
+                            "%sfill.count: %d elements at a density of %g; the container holds at most %d over what "
+                            "lies below",
+                            place, count, (double)k->fill->density, most > 0 ? most : 0);
+    }
+    ty_log(TY_LOG_INFO, "aggregate: layer %d, %d elements onto %d", layer, count, k->count);
+    k->spread += volume;
+    k->wanted[layer] = count;
+    k->count += count;
+    kit_drop(k, count);
+    return TY_OK;
+}
+
+void kit_refill(kit* k)
+{
+    int missing[MIXTURE_KINDS];
+    for (int layer = 0; layer <= k->layer; layer++)
+        missing[layer] = k->wanted[layer];
+    for (int i = 0; i < ty_pile_count(k->pile); i++)
+        missing[k->mix.kinds[k->mix.kind_of[ty_pile_bodies(k->pile)[i].grain]].layer]--;
+    for (int layer = 0; layer <= k->layer; layer++) // ends with the one that is selected
+    {
+        mixture_select(&k->mix, layer);
+        kit_drop(k, missing[layer]);
+    }
+}
