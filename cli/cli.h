@@ -103,6 +103,8 @@ json_t* ty_json_format(const char* format, ...) TY_PRINTF(1, 2);
 TY_CHECKED ty_status ty_json_print(json_t* value);
 // Writes it to a file, atomically, and releases it.
 TY_CHECKED ty_status ty_json_write(const char* path, json_t* value);
+// info_metrics.c: the metrics of an aggregate as lines of words with units; those without words keep their names.
+void ty_info_print_metrics(const json_t* values, int indent);
 // Whether the path ends in one of the endings (up to NULL); else a usage mistake that lists them.
 TY_CHECKED ty_status ty_output_check_ending(const ty_command* command, const char* output, const char* const* endings);
 // Whether a file can be written at path; leaves nothing there.

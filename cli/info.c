@@ -304,7 +304,7 @@ static ty_status read_info(const char* path, bool recipe, json_t** out, ty_error
     return info_image(path, out, error);
 }
 
-// "key: value" lines, nested keys indented.
+// "key: value" lines, nested keys indented; metrics in words.
 static void print_text(const json_t* value, int indent)
 {
     const char* key;
@@ -315,7 +315,14 @@ static void print_text(const json_t* value, int indent)
         if (json_is_object(item))
         {
             printf("\n");
-            print_text(item, indent + 2);
+            if (strcmp(key, "metrics") == 0)
+            {
+                ty_info_print_metrics(item, indent + 2);
+            }
+            else
+            {
+                print_text(item, indent + 2);
+            }
             continue;
         }
         char* text = json_dumps(item, JSON_ENCODE_ANY | JSON_REAL_PRECISION(7));

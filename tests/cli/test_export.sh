@@ -36,6 +36,13 @@ expect 0 "$tsuya" pack heap.yaml -o 'film.##.glb' --set animate.frames=3
 absent film.04.glb
 expect 0 "$tsuya" info film.03.glb
 prints 'instances: 14'
+prints 'elements: 14'
+prints 'at rest: false'
+grep -Eq '^  overlap, greatest: [0-9.e-]+ % of the width$' out.txt || fail "no overlap with its unit"
+grep -Eq '^  speed, root mean square: [0-9.e-]+ mm/s$' out.txt || fail "no speed with its unit"
+grep -q '_' out.txt && fail "a metric without words"
+expect 0 "$tsuya" info film.03.glb --json
+prints '"speed_rms_mm_s": '
 cmp -s film.01.glb film.03.glb && fail "nothing moves"
 expect 3 "$tsuya" pack heap.yaml -o 'none.##.glb'
 says "animate.frames"
