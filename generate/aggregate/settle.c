@@ -228,6 +228,29 @@ static void bodies_accelerate(void* context, int64_t begin, int64_t end, int wor
     }
 }
 
+// I w, by the rows of the inverse, which are scaled to their trace against overflow.
+static ty_vec3 spin_momentum(const float s[6], ty_vec3 w)
+{
+    float unit = 1.0f / (s[0] + s[1] + s[2]);
+    ty_vec3 x = ty_mul(ty_vec3_make(s[0], s[3], s[4]), unit), y = ty_mul(ty_vec3_make(s[3], s[1], s[5]), unit);
+    ty_vec3 z = ty_mul(ty_vec3_make(s[4], s[5], s[2]), unit), yz = ty_cross(y, z);
+    ty_vec3 l = {ty_dot(w, yz), ty_dot(w, ty_cross(z, x)), ty_dot(w, ty_cross(x, y))};
+    return ty_mul(l, unit / ty_dot(x, yz));
+}
+
+// Turns a body free of torques: its momentum L stays and dw/dt = I^-1 (L x w). The spin of the middle of the substep
+// turns it (midpoint rule), then its inertia there tells the spin from L.
+static void body_rotate(ty_pile* pile, int i)
+{
+    float h = 1.0f / pile->def.rate;
+    motion* m = &pile->motions[i];
+    ty_vec3 l = spin_momentum(m->inverse_inertia, m->w);
+    ty_vec3 middle = ty_mad(m->w, symmetric_times(m->inverse_inertia, ty_cross(l, m->w)), 0.5f * h);
+    pile_turn(&pile->bodies[i], ty_mul(middle, h));
+    pile_refresh(pile, i);
+    m->w = symmetric_times(m->inverse_inertia, l);
+}
+
 static void bodies_advance(void* context, int64_t begin, int64_t end, int worker)
 {
     (void)worker;
@@ -239,8 +262,7 @@ static void bodies_advance(void* context, int64_t begin, int64_t end, int worker
         if (pile->motions[i].asleep)
             continue;
         b->position = ty_mad(b->position, pile->motions[i].v, h);
-        pile_turn(b, ty_mul(pile->motions[i].w, h));
-        pile_refresh(pile, (int)i);
+        body_rotate(pile, (int)i);
     }
 }
 

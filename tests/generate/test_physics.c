@@ -175,6 +175,39 @@ static void test_energy_never_grows(void** state)
     ty_pile_destroy(pile);
 }
 
+// A body of three unequal moments of inertia, spun about the middle one, tumbles over and over (Euler): its angular
+// momentum stays and so does its energy.
+static void test_free_rotation(void** state)
+{
+    (void)state;
+    const float moments[3] = {2.0f * RADIUS * RADIUS, 1.5f * RADIUS * RADIUS, RADIUS * RADIUS}; // per unit mass
+    ty_element lump = balls[0];
+    for (int k = 0; k < 3; k++)
+        lump.inverse_inertia[k] = 1.0f / moments[k];
+    ty_pile_def def = weightless(0.5f);
+    def.grains = &lump;
+    ty_pile* pile = ty_pile_create(&def);
+    ty_body body = ball_at(0.0f, 0.0f, 0.0f);
+    body.spin = ty_vec3_make(1.0f, 50.0f, 0.5f);
+    ty_pile_add(pile, &body, 1);
+    ty_vec3 first = {moments[0] * 1.0f, moments[1] * 50.0f, moments[2] * 0.5f};
+    double energy = (double)ty_dot(first, body.spin);
+    int flips = 0, side = 1;
+    for (int i = 0; i < 5000; i++)
+    {
+        ty_pile_step(pile, NULL);
+        const ty_body* b = ty_pile_bodies(pile);
+        ty_quat q = b->rotation, back = {-q.x, -q.y, -q.z, q.w};
+        ty_vec3 w = ty_quat_rotate(back, b->spin), l = {moments[0] * w.x, moments[1] * w.y, moments[2] * w.z};
+        assert_true(ty_length(ty_sub(ty_quat_rotate(q, l), first)) < 1e-3f * ty_length(first));
+        assert_true(fabs((double)ty_dot(l, w) / energy - 1.0) < 0.002);
+        flips += w.y * (float)side < -25.0f;
+        side = w.y * (float)side < -25.0f ? -side : side;
+    }
+    assert_true(flips >= 3);
+    ty_pile_destroy(pile);
+}
+
 // --- bridges ---
 
 static ty_bridge_def water(void)
@@ -372,6 +405,7 @@ int main(void)
         cmocka_unit_test(test_oblique_impact),
         cmocka_unit_test(test_rolls_and_slips),
         cmocka_unit_test(test_energy_never_grows),
+        cmocka_unit_test(test_free_rotation),
         cmocka_unit_test(test_force_curve),
         cmocka_unit_test(test_rupture_takes_its_work),
         cmocka_unit_test(test_bridge_forms_at_contact),
