@@ -118,6 +118,11 @@ static float turned_wall(const ty_container* c, ty_vec3 p, ty_vec3* normal)
 {
     float rho = sqrtf(p.x * p.x + p.z * p.z);
     ty_vec3 n;
+    if (c->def.kind == TY_CONTAINER_BOWL && rho > (float)(c->size[0] - 1) * c->step) // beside it the table goes on
+    {
+        *normal = ty_vec3_make(0.0f, 1.0f, 0.0f);
+        return p.y;
+    }
     float gap = field_lookup(c, ty_vec3_make(rho, p.y, 0.0f), &n);
     float s = rho > 1e-9f ? n.x / rho : 0.0f;
     *normal = ty_normalize(ty_vec3_make(p.x * s, n.y, p.z * s));

@@ -351,6 +351,11 @@ static void test_lost(void** state)
     ty_element_def rice = ty_element_def_default();
     assert_int_equal(ty_container_create(&def, NULL, &bowl, &error), TY_OK);
     assert_int_equal(ty_element_init(&rice, (ty_seed){1}, 0, &grain, &error), TY_OK);
+    ty_vec3 up;
+    assert_float_equal(ty_container_wall(bowl, 0, ty_vec3_make(0.2f, 0.03f, 0.3f), &up), 0.03f,
+                       1e-6f); // over the table
+    assert_float_equal(ty_container_wall(bowl, 0, ty_vec3_make(-0.2f, -0.01f, 0.0f), &up), -0.01f, 1e-6f);
+    assert_true(up.y == 1.0f);
     ty_pile_def pile_def = ty_pile_def_default();
     pile_def.grains = &grain;
     pile_def.grain_count = 1;
