@@ -146,6 +146,7 @@ static void what_is_lost_comes_again(void** state)
     r.fill.heap = 8e-3f;
     r.settle.friction = 0.4f;
     r.settle.rolling = 0.0f;
+    r.seed = (ty_seed){1}; // one of those in which some do fall
     ty_aggregate* a = made(&r, NULL);
     assert_null(strstr(a->metrics, "\"lost\": 0,"));
     assert_non_null(strstr(a->metrics, "\"floating\": 0"));
