@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contact candidates of a pile: found on a grid, listed in id order with the impulses they keep, coloured in that
 // order.
-#include "grid.h"
+#include "pile_state.h"
 #include <string.h>
 
 #define REACH_SHARE 0.08f // of a body's radius, mean distance that a pile is looked ahead
@@ -25,7 +25,7 @@ enum
 
 static void touch_push(found* f, int a, int b)
 {
-    pile_reserve((void**)&f->touches, &f->touch_capacity, f->touch_count + 1, sizeof(touch));
+    list_reserve((void**)&f->touches, &f->touch_capacity, f->touch_count + 1, sizeof(touch));
     f->touches[f->touch_count++] = (touch){.a = (uint8_t)a, .b = (uint8_t)b};
 }
 
@@ -33,7 +33,7 @@ static void pair_push(found* f, int a, int b, int first, bool bridged)
 {
     if (f->touch_count == first)
         return;
-    pile_reserve((void**)&f->pairs, &f->pair_capacity, f->pair_count + 1, sizeof(pair));
+    list_reserve((void**)&f->pairs, &f->pair_capacity, f->pair_count + 1, sizeof(pair));
     f->pairs[f->pair_count++] =
         (pair){.a = a, .b = b, .first = first, .count = f->touch_count - first, .bridged = bridged};
 }
@@ -108,6 +108,16 @@ static void touches_find(const ty_pile* pile, found* f, int a, int b, float marg
     }
 }
 
+// Whether the spheres about two bodies come within the mean of both reaches.
+static bool spheres_meet(const void* owner, int i, int j)
+{
+    const ty_pile* pile = owner;
+    const ty_body *a = &pile->bodies[i], *b = &pile->bodies[j];
+    float reach = pile->def.grains[a->grain].radius * a->scale + pile->def.grains[b->grain].radius * b->scale;
+    reach = reach * pile->growth + 0.5f * (pile->poses[i].reach + pile->poses[j].reach);
+    return ty_length_sqr(ty_sub(a->position, b->position)) <= reach * reach;
+}
+
 typedef struct search
 {
     ty_pile* pile;
@@ -126,7 +136,7 @@ static void pairs_find(void* context, int64_t begin, int64_t end, int worker)
     body_list near = {0};
     for (int i = (int)begin; i < (int)end; i++)
     {
-        body_grid_after(pile, &s->grid, i, &near);
+        body_grid_after(&s->grid, i, spheres_meet, pile, &near);
         for (int n = 0; n < near.count; n++)
         {
             int j = near.at[n], first = f->touch_count;
@@ -212,8 +222,8 @@ static void search_run(search* s, ty_workers* workers, ty_range_fn* fn)
         f->first_pair = pile->pair_count, f->first_touch = pile->touch_count;
         pile->pair_count += f->pair_count, pile->touch_count += f->touch_count;
     }
-    pile_reserve((void**)&pile->pairs, &pile->pair_capacity, pile->pair_count, sizeof(pair));
-    pile_reserve((void**)&pile->touches, &pile->touch_capacity, pile->touch_count, sizeof(touch));
+    list_reserve((void**)&pile->pairs, &pile->pair_capacity, pile->pair_count, sizeof(pair));
+    list_reserve((void**)&pile->touches, &pile->touch_capacity, pile->touch_count, sizeof(touch));
     pieces_join(s, count);
 }
 
@@ -223,7 +233,8 @@ static void candidates_find(ty_pile* pile, ty_workers* workers)
     for (int i = 0; i < pile->count; i++)
         widest = ty_max(widest, pile->poses[i].reach);
     search s = {.pile = pile};
-    s.grid = body_grid_create(pile, 2.0f * pile->max_radius * pile->growth + widest);
+    s.grid = body_grid_create(pile->bodies, offsetof(ty_body, position), sizeof(ty_body), pile->count,
+                              2.0f * pile->max_radius * pile->growth + widest);
     s.pieces = TY_ALLOC(found, (pile->count + SEARCH_PIECE - 1) / SEARCH_PIECE);
     search_run(&s, workers, pairs_find);
     pile->wall_first = pile->pair_count;
@@ -234,36 +245,11 @@ static void candidates_find(ty_pile* pile, ty_workers* workers)
 
 // --- colours ---
 
-// Greedy, in id order: the lowest colour that neither body has; then pairs by colour, in id order within one.
-static void pairs_color(ty_pile* pile)
+// And places for the contacts of each pair, in the order in which they are worked off.
+static void pairs_order(ty_pile* pile)
 {
-    uint64_t* used = TY_ALLOC(uint64_t, pile->count);
-    uint8_t* color = TY_ALLOC(uint8_t, pile->pair_count);
-    int count[PILE_COLORS + 1] = {0};
-    for (int i = 0; i < pile->wall_first; i++)
-    {
-        const pair* p = &pile->pairs[i];
-        uint64_t taken = used[p->a] | used[p->b] | 1ull << (PILE_COLORS - 1);
-        uint64_t open = ~taken & ((1ull << PILE_COLORS) - 1);
-        int c = open ? __builtin_ctzll(open) : PILE_COLORS - 1;
-        color[i] = (uint8_t)c;
-        count[c]++;
-        used[p->a] |= 1ull << c;
-        used[p->b] |= 1ull << c;
-    }
-    for (int i = pile->wall_first; i < pile->pair_count; i++)
-        color[i] = PILE_COLORS;
-    count[PILE_COLORS] = pile->pair_count - pile->wall_first;
-    int next[PILE_COLORS + 1];
-    pile->color_first[0] = 0;
-    for (int c = 0; c <= PILE_COLORS; c++)
-    {
-        next[c] = pile->color_first[c];
-        pile->color_first[c + 1] = pile->color_first[c] + count[c];
-    }
-    pile_reserve((void**)&pile->order, &pile->order_capacity, pile->pair_count, sizeof(int));
-    for (int i = 0; i < pile->pair_count; i++)
-        pile->order[next[color[i]]++] = i;
+    list_reserve((void**)&pile->order, &pile->order_capacity, pile->pair_count, sizeof(int));
+    pairs_color(pile->pairs, sizeof *pile->pairs, pile->pair_count, pile->count, pile->order, pile->color_first);
     int slot = 0;
     for (int i = 0; i < pile->pair_count; i++)
     {
@@ -271,9 +257,7 @@ static void pairs_color(ty_pile* pile)
         p->slot = slot;
         slot += p->count + pile->cohesive;
     }
-    pile_reserve((void**)&pile->contacts, &pile->contact_capacity, slot, sizeof(contact));
-    ty_free(used);
-    ty_free(color);
+    list_reserve((void**)&pile->contacts, &pile->contact_capacity, slot, sizeof(contact));
 }
 
 static void lists_swap(ty_pile* pile)
@@ -322,7 +306,7 @@ void pile_detect(ty_pile* pile, float margin, ty_workers* workers)
     pile_walls_see(pile);
     lists_swap(pile);
     candidates_find(pile, workers);
-    pairs_color(pile);
+    pairs_order(pile);
     pile->stale = false;
 }
 
@@ -378,11 +362,11 @@ void pile_sweep(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn)
     {
         WORTH_SHARING = 768, // pairs of a colour; below, waking a thread costs more than it gives
     };
-    for (int c = 0; c <= PILE_COLORS; c++)
+    for (int c = 0; c <= PAIR_COLORS; c++)
     {
         sweep s = {pile, fn, pile->color_first[c]};
         int count = pile->color_first[c + 1] - s.first;
-        bool share = count >= WORTH_SHARING && c != PILE_COLORS - 1;
+        bool share = count >= WORTH_SHARING && c != PAIR_COLORS - 1;
         if (count > 0)
             ty_parallel_for(share ? workers : NULL, count, share ? (count + 7) / 8 : count, sweep_range, &s);
     }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What one measures on a pile: speeds, overlaps, contacts, grains that float, depth below the surface, packing
 // fraction.
-#include "grid.h"
+
+#include "pile_state.h"
 
 #define NEAR_SHARE 0.02f // of the width: a gap up to here counts as a contact
 
@@ -183,6 +184,21 @@ static bool clear_of_walls(const ty_pile* pile, ty_vec3 p)
     return true;
 }
 
+static bool body_holds(const void* owner, int i, ty_vec3 p)
+{
+    const ty_pile* pile = owner;
+    if (ty_length_sqr(ty_sub(p, pile->bodies[i].position)) > ty_sqr(pile->max_radius))
+        return false;
+    const int count = pile_ball_count(pile, i);
+    for (int k = 0; k < count; k++)
+    {
+        const ty_ball* b = &pile_balls(pile, i)[k];
+        if (ty_length_sqr(ty_sub(p, b->center)) < ty_sqr(b->radius))
+            return true;
+    }
+    return false;
+}
+
 // Share of points that lie in a ball, among points two widths below the surface and one off the walls.
 static float phi_measure(const ty_pile* pile)
 {
@@ -190,7 +206,8 @@ static float phi_measure(const ty_pile* pile)
         return 0.0f;
     heights h = heights_create(pile);
     ty_rng rng = ty_rng_make((ty_seed){0}, 0x706869, (uint64_t)pile->count);
-    body_grid grid = body_grid_create(pile, 1.01f * pile->max_radius);
+    body_grid grid = body_grid_create(pile->bodies, offsetof(ty_body, position), sizeof(ty_body), pile->count,
+                                      1.01f * pile->max_radius);
     const int tries = 40000;
     int in = 0, all = 0;
     for (int i = 0; i < tries; i++)
@@ -203,7 +220,7 @@ static float phi_measure(const ty_pile* pile)
         if (high <= low || !clear_of_walls(pile, p))
             continue;
         all++;
-        in += body_grid_inside(pile, &grid, p);
+        in += body_grid_any(&grid, p, body_holds, pile);
     }
     ty_free(h.y);
     body_grid_destroy(&grid);

@@ -49,15 +49,6 @@ const ty_body* ty_pile_bodies(const ty_pile* pile)
     return pile->bodies;
 }
 
-void pile_reserve(void** array, int* capacity, int needed, size_t size)
-{
-    if (needed <= *capacity)
-        return;
-    int grown = needed + needed / 2 + 64;
-    *array = ty_grow(*array, (size_t)*capacity, (size_t)grown, size);
-    *capacity = grown;
-}
-
 static void bodies_reserve(ty_pile* pile, int needed)
 {
     if (needed <= pile->capacity)
@@ -80,7 +71,7 @@ static void balls_lay(ty_pile* pile, int first)
         TY_ASSERT(pile->bodies[i].grain < (uint32_t)pile->def.grain_count);
         pile->ball_first[i + 1] = pile->ball_first[i] + pile->def.grains[pile->bodies[i].grain].ball_count;
     }
-    pile_reserve((void**)&pile->balls, &pile->ball_capacity, pile->ball_first[pile->count], sizeof(ty_ball));
+    list_reserve((void**)&pile->balls, &pile->ball_capacity, pile->ball_first[pile->count], sizeof(ty_ball));
 }
 
 static void body_enter(ty_pile* pile, int i)

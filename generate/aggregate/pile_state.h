@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The inside of a pile: bodies, candidate contacts with the impulses they keep, colours, contacts of the substep.
 #pragma once
+#include "candidates.h"
 #include <tsuya/generate/pile.h>
 
 enum
 {
-    PILE_COLORS = 48, // the last one takes what finds no other and is worked off in order by one thread
     PILE_WALL = -1,
     PILE_LID = 31, // wall number of the lid during a fill
 };
@@ -96,8 +96,7 @@ struct ty_pile
     int contact_capacity;
     int* order; // pairs by colour; the walls are the colour after the last
     int order_capacity;
-    int color_first[PILE_COLORS + 2];
-    int color_count;
+    int color_first[PAIR_COLORS + 2];
     ty_wall_motion_fn* wall_fn;
     void* wall_context;
     moving_wall* walls; // NULL = they stand still
@@ -127,7 +126,6 @@ static inline int pile_ball_count(const ty_pile* pile, int body)
 void pile_refresh(ty_pile* pile, int body); // frame, balls and inertia from position and rotation
 void pile_turn(ty_body* body, ty_vec3 rotation_vector);
 float pile_wall(const ty_pile* pile, int wall, ty_vec3 p, ty_vec3* normal);
-void pile_reserve(void** array, int* capacity, int needed, size_t size);
 
 // wall.c
 void pile_walls_place(ty_pile* pile);                                 // where they are at this time

@@ -15,15 +15,6 @@ ty_xpbd_def ty_xpbd_def_default(void)
                          .bridge = ty_bridge_def_default()};
 }
 
-void xpbd_reserve(void** array, int* capacity, int needed, size_t size)
-{
-    if (needed <= *capacity)
-        return;
-    int grown = needed + needed / 2 + 64;
-    *array = ty_grow(*array, (size_t)*capacity, (size_t)grown, size);
-    *capacity = grown;
-}
-
 ty_xpbd* ty_xpbd_create(const ty_xpbd_def* def)
 {
     TY_ASSERT(def->rate > 0.0f && def->modulus > 0.0f);
@@ -53,8 +44,8 @@ void ty_xpbd_destroy(ty_xpbd* x)
 static void particles_add(ty_xpbd* x, const ty_soft_body* made, const ty_affine* frame, ty_vec3 velocity, soft* body)
 {
     float scale = body->scale, cube = scale * scale * scale;
-    xpbd_reserve((void**)&x->particles, &x->particle_capacity, x->particle_count + made->ball_count, sizeof(particle));
-    xpbd_reserve((void**)&x->rest, &x->rest_capacity, x->particle_count + made->ball_count, sizeof(ty_vec3));
+    list_reserve((void**)&x->particles, &x->particle_capacity, x->particle_count + made->ball_count, sizeof(particle));
+    list_reserve((void**)&x->rest, &x->rest_capacity, x->particle_count + made->ball_count, sizeof(ty_vec3));
     for (int i = 0; i < made->ball_count; i++)
     {
         const ty_ball* ball = &made->balls[i];
@@ -76,7 +67,7 @@ static void particles_add(ty_xpbd* x, const ty_soft_body* made, const ty_affine*
 static void constraints_add(ty_xpbd* x, const ty_soft_body* made, const soft* body)
 {
     float scale = body->scale;
-    xpbd_reserve((void**)&x->stretches, &x->stretch_capacity, x->stretch_count + made->stretch_count,
+    list_reserve((void**)&x->stretches, &x->stretch_capacity, x->stretch_count + made->stretch_count,
                  sizeof(ty_stretch));
     for (int i = 0; i < made->stretch_count; i++)
     {
@@ -85,7 +76,7 @@ static void constraints_add(ty_xpbd* x, const ty_soft_body* made, const soft* bo
         s.compliance /= scale;
         x->stretches[x->stretch_count++] = s;
     }
-    xpbd_reserve((void**)&x->bends, &x->bend_capacity, x->bend_count + made->bend_count, sizeof(ty_bend));
+    list_reserve((void**)&x->bends, &x->bend_capacity, x->bend_count + made->bend_count, sizeof(ty_bend));
     for (int i = 0; i < made->bend_count; i++)
     {
         ty_bend b = made->bends[i];
@@ -93,7 +84,7 @@ static void constraints_add(ty_xpbd* x, const ty_soft_body* made, const soft* bo
         b.compliance /= scale;
         x->bends[x->bend_count++] = b;
     }
-    xpbd_reserve((void**)&x->triangles, &x->triangle_capacity, x->triangle_count + made->triangle_count,
+    list_reserve((void**)&x->triangles, &x->triangle_capacity, x->triangle_count + made->triangle_count,
                  sizeof *x->triangles);
     for (int i = 0; i < made->triangle_count; i++)
         memcpy(x->triangles[x->triangle_count++], made->triangles[i], sizeof *x->triangles);
@@ -117,7 +108,7 @@ int ty_xpbd_add(ty_xpbd* x, const ty_soft_body* made, ty_vec3 position, ty_quat 
     ty_affine frame = ty_affine_from_trs(position, rotation, ty_vec3_make(scale, scale, scale));
     particles_add(x, made, &frame, velocity, &body);
     constraints_add(x, made, &body);
-    xpbd_reserve((void**)&x->bodies, &x->body_capacity, x->body_count + 1, sizeof(soft));
+    list_reserve((void**)&x->bodies, &x->body_capacity, x->body_count + 1, sizeof(soft));
     x->bodies[x->body_count] = body;
     if (made->triangle_count > 0)
         x->bodies[x->body_count].volume = made->swell * ty_xpbd_volume(x, x->body_count);

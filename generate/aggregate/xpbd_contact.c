@@ -2,7 +2,6 @@
 // Contacts of elastic bodies: found on a grid in id order, coloured, and projected once a substep with friction and
 // the pull of water. Multipliers begin at 0 each time: friction undoes the slip of that substep alone.
 #include "xpbd_state.h"
-#include <string.h>
 
 // --- walls ---
 
@@ -26,90 +25,16 @@ float xpbd_wall(const ty_xpbd* x, int wall, ty_vec3 p, ty_vec3* normal)
 
 // --- candidates ---
 
-typedef struct grid
+static bool bodies_meet(const void* owner, int i, int j)
 {
-    ty_vec3 low;
-    float cell;
-    int size[3];
-    int *start, *sorted;
-} grid;
-
-static void grid_cell(const grid* g, ty_vec3 p, int at[3])
-{
-    float f[3] = {(p.x - g->low.x) / g->cell, (p.y - g->low.y) / g->cell, (p.z - g->low.z) / g->cell};
-    for (int k = 0; k < 3; k++)
-        at[k] = (int)ty_clamp(f[k], 0.0f, (float)(g->size[k] - 1));
-}
-
-static int grid_index(const grid* g, const int at[3])
-{
-    return (at[2] * g->size[1] + at[1]) * g->size[0] + at[0];
-}
-
-static grid grid_create(const ty_xpbd* x)
-{
-    grid g = {.cell = x->margin};
-    ty_bounds b = ty_bounds_empty();
-    float widest = 0.0f;
-    for (int i = 0; i < x->body_count; i++)
-    {
-        b = ty_bounds_add(b, x->bodies[i].center);
-        widest = ty_max(widest, x->bodies[i].radius);
-    }
-    g.cell += 2.0f * widest;
-    g.low = b.low;
-    float extent[3] = {b.high.x - b.low.x, b.high.y - b.low.y, b.high.z - b.low.z};
-    for (int k = 0; k < 3; k++)
-        g.size[k] = (int)ty_clamp(extent[k] / g.cell + 1.0f, 1.0f, 128.0f);
-    int cells = g.size[0] * g.size[1] * g.size[2], at[3];
-    g.start = TY_ALLOC(int, cells + 2);
-    g.sorted = TY_ALLOC(int, x->body_count);
-    for (int i = 0; i < x->body_count; i++)
-    {
-        grid_cell(&g, x->bodies[i].center, at);
-        g.start[grid_index(&g, at) + 2]++;
-    }
-    for (int c = 0; c < cells; c++)
-        g.start[c + 2] += g.start[c + 1];
-    for (int i = 0; i < x->body_count; i++)
-    {
-        grid_cell(&g, x->bodies[i].center, at);
-        g.sorted[g.start[grid_index(&g, at) + 1]++] = i;
-    }
-    return g;
-}
-
-// Bodies after i that may come within the margin, ascending.
-static int grid_neighbours(const ty_xpbd* x, const grid* g, int i, int* out, int limit)
-{
-    int at[3], count = 0;
-    const soft* body = &x->bodies[i];
-    grid_cell(g, body->center, at);
-    for (int n = 0; n < 27; n++)
-    {
-        int to[3] = {at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1};
-        bool in = true;
-        for (int k = 0; k < 3; k++)
-            in = in && to[k] >= 0 && to[k] < g->size[k];
-        int cell = in ? grid_index(g, to) : 0;
-        for (int k = in ? g->start[cell] : 0; in && k < g->start[cell + 1]; k++)
-        {
-            int j = g->sorted[k], place = count;
-            float reach = body->radius + x->bodies[j].radius + x->margin;
-            if (j <= i || count == limit || ty_length_sqr(ty_sub(body->center, x->bodies[j].center)) > reach * reach)
-                continue;
-            for (; place > 0 && out[place - 1] > j; place--)
-                out[place] = out[place - 1];
-            out[place] = j;
-            count++;
-        }
-    }
-    return count;
+    const ty_xpbd* x = owner;
+    const soft *a = &x->bodies[i], *b = &x->bodies[j];
+    return ty_length_sqr(ty_sub(a->center, b->center)) <= ty_sqr(a->radius + b->radius + x->margin);
 }
 
 static void near_push(ty_xpbd* x, int a, int b)
 {
-    xpbd_reserve((void**)&x->nears, &x->near_capacity, x->near_count + 1, sizeof(near));
+    list_reserve((void**)&x->nears, &x->near_capacity, x->near_count + 1, sizeof(near));
     x->nears[x->near_count++] = (near){.a = a, .b = b};
 }
 
@@ -117,7 +42,7 @@ static void couple_push(ty_xpbd* x, int a, int b, int first)
 {
     if (x->near_count == first)
         return;
-    xpbd_reserve((void**)&x->couples, &x->couple_capacity, x->couple_count + 1, sizeof(couple));
+    list_reserve((void**)&x->couples, &x->couple_capacity, x->couple_count + 1, sizeof(couple));
     x->couples[x->couple_count++] = (couple){.a = a, .b = b, .first = first, .count = x->near_count - first};
 }
 
@@ -135,6 +60,24 @@ static void bodies_near(ty_xpbd* x, int i, int j)
                 near_push(x, s, t);
     }
     couple_push(x, i, j, first);
+}
+
+static void couples_find(ty_xpbd* x)
+{
+    float widest = 0.0f;
+    for (int i = 0; i < x->body_count; i++)
+        widest = ty_max(widest, x->bodies[i].radius);
+    body_grid grid =
+        body_grid_create(x->bodies, offsetof(soft, center), sizeof(soft), x->body_count, x->margin + 2.0f * widest);
+    body_list near_ones = {0};
+    for (int i = 0; i < x->body_count; i++)
+    {
+        body_grid_after(&grid, i, bodies_meet, x, &near_ones);
+        for (int n = 0; n < near_ones.count; n++)
+            bodies_near(x, i, near_ones.at[n]);
+    }
+    ty_free(near_ones.at);
+    body_grid_destroy(&grid);
 }
 
 static void walls_near(ty_xpbd* x)
@@ -173,35 +116,6 @@ static void bridges_keep(ty_xpbd* x)
     }
 }
 
-// Greedy, in id order: the lowest colour that neither body has. Walls are the colour after the last.
-static void couples_color(ty_xpbd* x)
-{
-    uint64_t* used = TY_ALLOC(uint64_t, x->body_count);
-    uint8_t* color = TY_ALLOC(uint8_t, x->couple_count);
-    int next[XPBD_COLORS + 2] = {0};
-    for (int i = 0; i < x->couple_count; i++)
-    {
-        const couple* c = &x->couples[i];
-        color[i] = XPBD_COLORS;
-        if (c->b >= 0)
-        {
-            uint64_t open = ~(used[c->a] | used[c->b] | 1ull << (XPBD_COLORS - 1)) & ((1ull << XPBD_COLORS) - 1);
-            color[i] = (uint8_t)(open ? __builtin_ctzll(open) : XPBD_COLORS - 1);
-            used[c->a] |= 1ull << color[i];
-            used[c->b] |= 1ull << color[i];
-        }
-        next[color[i] + 1]++;
-    }
-    for (int c = 0; c <= XPBD_COLORS; c++)
-        next[c + 1] += next[c];
-    memcpy(x->color_first, next, sizeof next);
-    xpbd_reserve((void**)&x->order, &x->order_capacity, x->couple_count, sizeof(int));
-    for (int i = 0; i < x->couple_count; i++)
-        x->order[next[color[i]]++] = i;
-    ty_free(used);
-    ty_free(color);
-}
-
 #define SWAP(type, a, b)                                                                                               \
     do                                                                                                                 \
     {                                                                                                                  \
@@ -216,20 +130,12 @@ void xpbd_detect(ty_xpbd* x)
     SWAP(int, x->couple_capacity, x->old_couple_capacity);
     x->old_couple_count = x->couple_count;
     x->near_count = x->couple_count = 0;
-    grid g = grid_create(x);
-    int neighbours[512];
-    for (int i = 0; i < x->body_count; i++)
-    {
-        int count = grid_neighbours(x, &g, i, neighbours, 512);
-        for (int n = 0; n < count; n++)
-            bodies_near(x, i, neighbours[n]);
-    }
-    ty_free(g.start);
-    ty_free(g.sorted);
+    couples_find(x);
     x->wall_first = x->couple_count;
     bridges_keep(x);
     walls_near(x);
-    couples_color(x);
+    list_reserve((void**)&x->order, &x->order_capacity, x->couple_count, sizeof(int));
+    pairs_color(x->couples, sizeof(couple), x->couple_count, x->body_count, x->order, x->color_first);
     x->moved = 0.0f;
     x->stale = false;
 }
@@ -367,11 +273,11 @@ void xpbd_contacts_solve(ty_xpbd* x, ty_workers* workers)
     {
         WORTH_SHARING = 768, // couples of a colour
     };
-    for (int c = 0; c <= XPBD_COLORS; c++)
+    for (int c = 0; c <= PAIR_COLORS; c++)
     {
         sweep s = {x, x->color_first[c]};
         int count = x->color_first[c + 1] - s.first;
-        bool share = count >= WORTH_SHARING && c != XPBD_COLORS - 1;
+        bool share = count >= WORTH_SHARING && c != PAIR_COLORS - 1;
         if (count > 0)
             ty_parallel_for(share ? workers : NULL, count, share ? (count + 7) / 8 : count, sweep_range, &s);
     }

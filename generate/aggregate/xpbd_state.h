@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The inside of the elastic solver: particles, bodies with their constraints, candidate contacts.
 #pragma once
+#include "candidates.h"
 #include <tsuya/generate/xpbd.h>
 
 enum
 {
-    XPBD_COLORS = 48, // the last one takes what finds no other and is worked off in order by one thread
     XPBD_WALL = -1,
     XPBD_LID = 31,
 };
@@ -68,7 +68,7 @@ struct ty_xpbd
     int couple_count, couple_capacity, old_couple_count, old_couple_capacity, wall_first;
     int* order;
     int order_capacity;
-    int color_first[XPBD_COLORS + 2];
+    int color_first[PAIR_COLORS + 2];
     float moved; // m, how far particles may have come since candidates were found
     bool stale, cohesive;
     float margin; // m, gaps up to here are candidates
@@ -81,8 +81,6 @@ static inline void particle_move(particle* p, ty_vec3 direction, float distance)
     p->x = ty_add(p->x, d);
     p->shift = ty_add(p->shift, d);
 }
-
-void xpbd_reserve(void** array, int* capacity, int needed, size_t size);
 
 // xpbd_body.c: runs on one body's particles alone
 void xpbd_body_solve(ty_xpbd* x, soft* body);

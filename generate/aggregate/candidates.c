@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grid over a pile's bodies, built by counting; its cells stay within a few for each body.
-#include "grid.h"
+// The grid, built by counting; its cells stay within a few for each body. Colours.
+#include "candidates.h"
 #include <string.h>
 
 enum
@@ -8,6 +8,17 @@ enum
     CELLS_EACH = 8, // of a body, at most
     CELLS_LEAST = 1 << 15,
 };
+
+void list_reserve(void** array, int* capacity, int needed, size_t size)
+{
+    if (needed <= *capacity)
+        return;
+    int grown = needed + needed / 2 + 64;
+    *array = ty_grow(*array, (size_t)*capacity, (size_t)grown, size);
+    *capacity = grown;
+}
+
+// --- the grid ---
 
 static int coordinate(const body_grid* g, float x, float low, int axis)
 {
@@ -32,32 +43,33 @@ static int64_t size_choose(body_grid* g, ty_vec3 extent, int count)
     }
 }
 
-body_grid body_grid_create(const ty_pile* pile, float cell)
+body_grid body_grid_create(const void* bodies, size_t offset, size_t stride, int count, float cell)
 {
     body_grid g = {.cell = cell};
+    const char* first = (const char*)bodies + offset;
     ty_bounds b = ty_bounds_empty();
-    for (int i = 0; i < pile->count; i++)
-        b = ty_bounds_add(b, pile->bodies[i].position);
-    if (pile->count == 0)
+    for (int i = 0; i < count; i++)
+        b = ty_bounds_add(b, *(const ty_vec3*)(first + (size_t)i * stride));
+    if (count == 0)
         b = ty_bounds_add(b, ty_vec3_make(0.0f, 0.0f, 0.0f));
     g.low = b.low;
-    int64_t cells = size_choose(&g, ty_sub(b.high, b.low), pile->count);
+    int64_t cells = size_choose(&g, ty_sub(b.high, b.low), count);
     g.start = TY_ALLOC(int, cells + 1);
-    g.sorted = TY_ALLOC(int, pile->count);
-    g.cell_of = TY_ALLOC(int, pile->count);
-    for (int i = 0; i < pile->count; i++)
+    g.sorted = TY_ALLOC(int, count);
+    g.cell_of = TY_ALLOC(int, count);
+    for (int i = 0; i < count; i++)
     {
-        ty_vec3 p = pile->bodies[i].position;
+        ty_vec3 p = *(const ty_vec3*)(first + (size_t)i * stride);
         int x = coordinate(&g, p.x, g.low.x, 0), y = coordinate(&g, p.y, g.low.y, 1);
         g.cell_of[i] = (coordinate(&g, p.z, g.low.z, 2) * g.size[1] + y) * g.size[0] + x;
         g.start[g.cell_of[i] + 1]++;
     }
     for (int64_t c = 0; c < cells; c++)
         g.start[c + 1] += g.start[c];
-    for (int i = pile->count - 1; i >= 0; i--) // fills each cell from its end, and moves its end to its start
+    for (int i = count - 1; i >= 0; i--) // fills each cell from its end, and moves its end to its start
         g.sorted[--g.start[g.cell_of[i] + 1]] = i;
     memmove(g.start, g.start + 1, (size_t)cells * sizeof(int));
-    g.start[cells] = pile->count;
+    g.start[cells] = count;
     return g;
 }
 
@@ -68,24 +80,16 @@ void body_grid_destroy(body_grid* g)
     ty_free(g->cell_of);
 }
 
-static bool spheres_meet(const ty_pile* pile, int i, int j)
-{
-    const ty_body *a = &pile->bodies[i], *b = &pile->bodies[j];
-    float reach = pile->def.grains[a->grain].radius * a->scale + pile->def.grains[b->grain].radius * b->scale;
-    reach = reach * pile->growth + 0.5f * (pile->poses[i].reach + pile->poses[j].reach);
-    return ty_length_sqr(ty_sub(a->position, b->position)) <= reach * reach;
-}
-
 static void list_insert(body_list* out, int j)
 {
-    pile_reserve((void**)&out->at, &out->capacity, out->count + 1, sizeof(int));
+    list_reserve((void**)&out->at, &out->capacity, out->count + 1, sizeof(int));
     int at = out->count++;
     for (; at > 0 && out->at[at - 1] > j; at--)
         out->at[at] = out->at[at - 1];
     out->at[at] = j;
 }
 
-void body_grid_after(const ty_pile* pile, const body_grid* g, int i, body_list* out)
+void body_grid_after(const body_grid* g, int i, body_meet_fn* meet, const void* owner, body_list* out)
 {
     int c = g->cell_of[i], x = c % g->size[0], y = c / g->size[0] % g->size[1], z = c / (g->size[0] * g->size[1]);
     out->count = 0;
@@ -96,26 +100,12 @@ void body_grid_after(const ty_pile* pile, const body_grid* g, int i, body_list* 
             int row = (k * g->size[1] + j) * g->size[0];
             int begin = g->start[row + (x > 0 ? x - 1 : 0)], end = g->start[row + (x + 1 < g->size[0] ? x + 1 : x) + 1];
             for (int s = begin; s < end; s++)
-                if (g->sorted[s] > i && spheres_meet(pile, i, g->sorted[s]))
+                if (g->sorted[s] > i && meet(owner, i, g->sorted[s]))
                     list_insert(out, g->sorted[s]);
         }
 }
 
-static bool body_holds(const ty_pile* pile, int i, ty_vec3 p)
-{
-    if (ty_length_sqr(ty_sub(p, pile->bodies[i].position)) > ty_sqr(pile->max_radius))
-        return false;
-    const int count = pile_ball_count(pile, i);
-    for (int k = 0; k < count; k++)
-    {
-        const ty_ball* b = &pile_balls(pile, i)[k];
-        if (ty_length_sqr(ty_sub(p, b->center)) < ty_sqr(b->radius))
-            return true;
-    }
-    return false;
-}
-
-bool body_grid_inside(const ty_pile* pile, const body_grid* g, ty_vec3 p)
+bool body_grid_any(const body_grid* g, ty_vec3 p, body_hold_fn* hold, const void* owner)
 {
     int x = coordinate(g, p.x, g->low.x, 0), y = coordinate(g, p.y, g->low.y, 1), z = coordinate(g, p.z, g->low.z, 2);
     for (int k = z > 0 ? z - 1 : 0; k <= z + 1 && k < g->size[2]; k++)
@@ -124,8 +114,37 @@ bool body_grid_inside(const ty_pile* pile, const body_grid* g, ty_vec3 p)
             int row = (k * g->size[1] + j) * g->size[0];
             int begin = g->start[row + (x > 0 ? x - 1 : 0)], end = g->start[row + (x + 1 < g->size[0] ? x + 1 : x) + 1];
             for (int s = begin; s < end; s++)
-                if (body_holds(pile, g->sorted[s], p))
+                if (hold(owner, g->sorted[s], p))
                     return true;
         }
     return false;
+}
+
+// --- colours ---
+
+void pairs_color(const void* pairs, size_t stride, int count, int body_count, int* order, int first[PAIR_COLORS + 2])
+{
+    uint64_t* used = TY_ALLOC(uint64_t, body_count);
+    uint8_t* color = TY_ALLOC(uint8_t, count);
+    int next[PAIR_COLORS + 2] = {0};
+    for (int i = 0; i < count; i++)
+    {
+        const int* p = (const int*)((const char*)pairs + (size_t)i * stride);
+        color[i] = PAIR_COLORS;
+        if (p[1] >= 0)
+        {
+            uint64_t open = ~(used[p[0]] | used[p[1]] | 1ull << (PAIR_COLORS - 1)) & ((1ull << PAIR_COLORS) - 1);
+            color[i] = (uint8_t)(open ? __builtin_ctzll(open) : PAIR_COLORS - 1);
+            used[p[0]] |= 1ull << color[i];
+            used[p[1]] |= 1ull << color[i];
+        }
+        next[color[i] + 1]++;
+    }
+    for (int c = 0; c <= PAIR_COLORS; c++)
+        next[c + 1] += next[c];
+    memcpy(first, next, sizeof next);
+    for (int i = 0; i < count; i++)
+        order[next[color[i]]++] = i;
+    ty_free(used);
+    ty_free(color);
 }
