@@ -29,7 +29,14 @@ typedef struct kit
 // make.c
 // A body of a random element, turned as the recipe allows and at most steepest off the horizontal.
 ty_body kit_body(kit* k, ty_vec3 position, float steepest);
-ty_bridge_def kit_bridge(const ty_aggregate_recipe* r); // the liquid between the grains, or none
+// Elements, container, and a pile of them without a body.
+TY_CHECKED ty_status kit_pile(kit* k, ty_error* error);
+TY_CHECKED ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error);
+char* kit_metrics(const kit* k, const ty_pile_metrics* m); // JSON, owned by the caller
+ty_bridge_def kit_bridge(const ty_aggregate_recipe* r);    // the liquid between the grains, or none
+
+// film.c
+TY_CHECKED ty_status kit_film(kit* k, const ty_aggregate_sink* sink, ty_error* error);
 
 // make_fill.c
 TY_CHECKED ty_status kit_fill(kit* k, ty_error* error);

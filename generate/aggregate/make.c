@@ -3,6 +3,7 @@
 // down.
 #include "kit.h"
 #include "start.h"
+#include <stdio.h>
 #include <string.h>
 #include <tsuya/base/log.h>
 
@@ -31,13 +32,27 @@ ty_body kit_body(kit* k, ty_vec3 position, float steepest)
 
 // --- checks ---
 
+static ty_status fill_check(const ty_fill_def* fill, const char* place, ty_error* error)
+{
+    if (fill->count < 1 || fill->count > TY_FILL_MOST)
+        return ty_error_set(error, TY_BAD_INPUT, "%sfill.count: %d; it lies in 1..%d", place, fill->count,
+                            TY_FILL_MOST);
+    if (!(fill->density >= 0.1f && fill->density <= 0.95f))
+        return ty_error_set(error, TY_BAD_INPUT, "%sfill.density: %g; it lies in 0.1..0.95", place,
+                            (double)fill->density);
+    return TY_OK;
+}
+
 static ty_status recipe_check(const ty_aggregate_recipe* r, ty_error* error)
 {
-    if (r->fill.count < 1 || r->fill.count > TY_FILL_MOST)
-        return ty_error_set(error, TY_BAD_INPUT, "fill.count: %d; it lies in 1..%d", r->fill.count, TY_FILL_MOST);
-    if (!(r->fill.density >= 0.1f && r->fill.density <= 0.95f))
-        return ty_error_set(error, TY_BAD_INPUT, "fill.density: %g; it lies in 0.1..0.95", (double)r->fill.density);
-    return layers_check(r, error);
+    ty_status status = fill_check(&r->fill, "", error);
+    for (int i = 0; i < r->layers.count && status == TY_OK; i++)
+    {
+        char place[32];
+        (void)snprintf(place, sizeof place, "layers[%d].", i);
+        status = fill_check(&((const ty_layer_def*)r->layers.items)[i].fill, place, error);
+    }
+    return status == TY_OK ? layers_check(r, error) : status;
 }
 
 static ty_status container_check(const kit* k, ty_error* error)
@@ -171,7 +186,7 @@ static void attributes_write(const kit* k, const uint32_t* owners, ty_aggregate*
     }
 }
 
-static char* metrics_write(const kit* k, const ty_pile_metrics* m)
+char* kit_metrics(const kit* k, const ty_pile_metrics* m)
 {
     static const char* const starts[] = {"inflate", "thesis", "lattice"};
     float repeat = ty_pile_repeat(ty_pile_bodies(k->pile), ty_pile_count(k->pile), k->mix.width);
@@ -190,12 +205,7 @@ static char* metrics_write(const kit* k, const ty_pile_metrics* m)
                             (double)k->start_repeat * 100.0, (double)repeat * 100.0);
 }
 
-static ty_affine body_transform(const ty_body* b)
-{
-    return ty_affine_from_trs(b->position, b->rotation, ty_vec3_make(b->scale, b->scale, b->scale));
-}
-
-static ty_status result_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error)
+ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error)
 {
     mixture_select(&k->mix, 0); // what is relative to a size is so to that of the lowest layer
     uint32_t count = (uint32_t)ty_pile_count(k->pile);
@@ -206,7 +216,7 @@ static ty_status result_write(kit* k, const ty_pile_metrics* metrics, ty_aggrega
         return ty_error_set(error, TY_NO_MEMORY, "no memory for %u grains", count);
     attributes_write(k, owners, a);
     ty_free(owners);
-    a->metrics = metrics_write(k, metrics);
+    a->metrics = kit_metrics(k, metrics);
     *out = a;
     return TY_OK;
 }
@@ -236,6 +246,9 @@ static ty_status pile_cut(kit* k, ty_error* error)
         gone[i] = ty_cut_takes(cut, ty_pile_bodies(k->pile)[i].position);
         taken += gone[i];
     }
+    for (int i = 0, kept = 0; i < count && k->frames; i++)
+        if (!gone[i])
+            k->frames[kept++] = k->frames[i];
     ty_pile_remove(k->pile, gone);
     ty_free(gone);
     if (taken < count)
@@ -243,7 +256,7 @@ static ty_status pile_cut(kit* k, ty_error* error)
     return ty_error_set(error, TY_BAD_INPUT, "container.cut: it takes all %d elements away", count);
 }
 
-static ty_status pile_make(kit* k, ty_error* error)
+ty_status kit_pile(kit* k, ty_error* error)
 {
     ty_status status = mixture_init(k->recipe, &k->mix, error);
     if (status == TY_OK)
@@ -270,7 +283,7 @@ static ty_status pile_make(kit* k, ty_error* error)
 static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
 {
     double start = ty_time_now();
-    ty_status status = pile_make(k, error);
+    ty_status status = kit_pile(k, error);
     if (status != TY_OK)
         return status;
     double prepared = ty_time_now();
@@ -291,7 +304,7 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
     if (status == TY_OK)
         status = pile_cut(k, error);
     if (status == TY_OK)
-        status = result_write(k, &metrics, out, error);
+        status = kit_write(k, &metrics, out, error);
     if (status != TY_OK)
         return status;
     ty_log(TY_LOG_INFO,
@@ -306,57 +319,7 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
     return TY_OK;
 }
 
-// --- a film ---
-
-static ty_status film_show(kit* k, int frame, const ty_aggregate* first, const ty_aggregate_sink* sink, ty_error* error)
-{
-    ty_pile_metrics metrics;
-    ty_pile_measure(k->pile, &metrics, NULL);
-    ty_aggregate shown = *first; // lends its prototypes, ids and attributes
-    shown.recipe = shown.hash = NULL;
-    shown.metrics = metrics_write(k, &metrics);
-    uint32_t count = (uint32_t)ty_pile_count(k->pile);
-    const ty_body* bodies = ty_pile_bodies(k->pile);
-    shown.transforms = TY_ALLOC(ty_affine, count);
-    for (uint32_t i = 0; i < count; i++)
-        shown.transforms[i] = body_transform(&bodies[i]);
-    ty_status status = sink->put(sink->context, frame, &shown, error);
-    ty_free(shown.transforms);
-    ty_free(shown.metrics);
-    ty_free(shown.recipe);
-    ty_free(shown.hash);
-    return status;
-}
-
-static ty_status film_make(kit* k, const ty_aggregate_sink* sink, ty_error* error)
-{
-    const ty_animate_def* animate = &k->recipe->animate;
-    if (mixture_holds_roe(k->recipe))
-        return ty_error_set(error, TY_BAD_INPUT, "animate.frames: eggs of fish have no film; take other elements");
-    if (k->recipe->settle.solver == TY_SOLVER_XPBD || k->recipe->press.strain > 0.0f)
-        return ty_error_set(error, TY_BAD_INPUT,
-                            "animate.frames: a film shows how rigid grains settle: take solver impulse and no press");
-    ty_status status = pile_make(k, error);
-    if (status == TY_OK)
-        status = kit_fill(k, error);
-    ty_aggregate* first = NULL;
-    ty_pile_metrics metrics = {0};
-    if (status == TY_OK)
-        status = result_write(k, &metrics, &first, error);
-    double rate = (double)k->recipe->settle.rate / (double)animate->fps;
-    int64_t step = 0;
-    for (int frame = 1; frame <= animate->frames && status == TY_OK; frame++)
-    {
-        for (int64_t until = (int64_t)((frame - 1) * rate + 0.5); step < until && !ty_cancel_requested(); step++)
-            ty_pile_step(k->pile, k->workers);
-        status = ty_cancel_requested() ? ty_error_set(error, TY_INTERRUPTED, "interrupted before frame %d", frame)
-                                       : film_show(k, frame, first, sink, error);
-    }
-    ty_aggregate_destroy(first);
-    return status;
-}
-
-// --- both ---
+// --- from a recipe ---
 
 static ty_status recipe_make(const void* def, ty_workers* workers, ty_aggregate** out, const ty_aggregate_sink* sink,
                              ty_error* error)
@@ -370,7 +333,7 @@ static ty_status recipe_make(const void* def, ty_workers* workers, ty_aggregate*
     k->fill = &recipe.fill;
     k->workers = workers;
     k->rng = ty_rng_make(recipe.seed, 0x626f6479, 0);
-    status = sink ? film_make(k, sink, error) : kit_make(k, out, error);
+    status = sink ? kit_film(k, sink, error) : kit_make(k, out, error);
     ty_free(k->frames);
     ty_pile_destroy(k->pile);
     ty_container_destroy(k->container);

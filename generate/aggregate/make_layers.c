@@ -13,16 +13,6 @@ ty_status layers_check(const ty_aggregate_recipe* r, ty_error* error)
 {
     if (r->layers.count == 0)
         return TY_OK;
-    for (int i = 0; i < r->layers.count; i++)
-    {
-        const ty_fill_def* fill = &layer_def(r, i + 1)->fill;
-        if (fill->count < 1 || fill->count > TY_FILL_MOST)
-            return ty_error_set(error, TY_BAD_INPUT, "layers[%d].fill.count: %d; it lies in 1..%d", i, fill->count,
-                                TY_FILL_MOST);
-        if (!(fill->density >= 0.1f && fill->density <= 0.95f))
-            return ty_error_set(error, TY_BAD_INPUT, "layers[%d].fill.density: %g; it lies in 0.1..0.95", i,
-                                (double)fill->density);
-    }
     if (r->settle.solver == TY_SOLVER_XPBD)
         return ty_error_set(error, TY_BAD_INPUT, "layers: they settle as rigid elements; take solver impulse");
     if (r->animate.frames > 0)

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layers: what comes second lies above the first, nothing floats, each keeps its own slots; what cannot be is refused.
-#include "base/cmocka_all.h"
-#include <stdlib.h>
-#include <string.h>
+#include "recipe_made.h"
 #include <tsuya/base/workers.h>
-#include <tsuya/generate/aggregate_recipe.h>
 
 enum
 {
@@ -37,15 +34,6 @@ static ty_aggregate_recipe small_bowl(ty_layer_def* layers, int count)
     r.settle.rolling = 0.05f;
     r.layers = (ty_param_list){layers, count};
     return r;
-}
-
-static ty_aggregate* made(const ty_aggregate_recipe* recipe, ty_workers* workers)
-{
-    ty_aggregate* out = NULL;
-    ty_error error = {0};
-    if (ty_aggregate_make(recipe, workers, &out, &error) != TY_OK)
-        fail_msg("%s", error.text);
-    return out;
 }
 
 static int by_height(const void* a, const void* b)
@@ -178,16 +166,6 @@ static void a_level_gives_the_count(void** state)
     print_message("eggs up to 13.5 and 15.5 mm: %u, %u\n", counts[0], counts[1]);
     double more = 0.6 * 2e-3 * 3.14159 * 0.019 * 0.019 / (3.14159 / 6.0 * 6.2e-3 * 6.2e-3 * 6.2e-3);
     assert_true(fabs((double)(counts[1] - counts[0]) - more) < 0.3 * more);
-}
-
-static void assert_refused(const ty_aggregate_recipe* recipe, const char* field, const char* range)
-{
-    ty_aggregate* out = (ty_aggregate*)1;
-    ty_error error = {0};
-    assert_int_equal(ty_aggregate_make(recipe, NULL, &out, &error), TY_BAD_INPUT);
-    assert_null(out);
-    if (!strstr(error.text, field) || !strstr(error.text, range))
-        fail_msg("'%s' does not name '%s' and '%s'", error.text, field, range);
 }
 
 static void impossible_layers_are_refused(void** state)

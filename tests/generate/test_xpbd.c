@@ -462,7 +462,7 @@ static void test_frame(void** state)
 
 // --- from a recipe ---
 
-static ty_aggregate* packed(int solver, float strain, ty_status expected)
+static ty_aggregate* packed(int solver, float strain, int cut, ty_status expected)
 {
     ty_aggregate_recipe recipe = ty_aggregate_recipe_default();
     recipe.element.variants = 2;
@@ -476,6 +476,7 @@ static ty_aggregate* packed(int solver, float strain, ty_status expected)
     recipe.settle.rate = 4000.0f;
     recipe.settle.max_seconds = solver == TY_SOLVER_XPBD ? 0.15f : 3.0f;
     recipe.press = (ty_press_def){strain, 0.2f};
+    recipe.container.cut = (ty_cut_def){.kind = cut, .normal = {1.0f, 0.0f, 0.0f}};
     ty_aggregate* made;
     ty_error error;
     assert_int_equal(ty_aggregate_make(&recipe, NULL, &made, &error), expected);
@@ -501,10 +502,10 @@ static float bent_most(const ty_aggregate* a)
 static void test_recipe(void** state)
 {
     (void)state;
-    ty_aggregate* rigid = packed(TY_SOLVER_IMPULSE, 0.0f, TY_OK);
-    ty_aggregate* soft = packed(TY_SOLVER_XPBD, 0.0f, TY_NOT_AT_REST);
-    ty_aggregate* slight = packed(TY_SOLVER_IMPULSE, 0.01f, TY_NOT_AT_REST);
-    ty_aggregate* pressed = packed(TY_SOLVER_IMPULSE, 0.2f, TY_NOT_AT_REST);
+    ty_aggregate* rigid = packed(TY_SOLVER_IMPULSE, 0.0f, TY_CUT_NONE, TY_OK);
+    ty_aggregate* soft = packed(TY_SOLVER_XPBD, 0.0f, TY_CUT_NONE, TY_NOT_AT_REST);
+    ty_aggregate* slight = packed(TY_SOLVER_IMPULSE, 0.01f, TY_CUT_NONE, TY_NOT_AT_REST);
+    ty_aggregate* pressed = packed(TY_SOLVER_IMPULSE, 0.2f, TY_CUT_NONE, TY_NOT_AT_REST);
     print_message("bent: %.3g %.3g %.3g\n", (double)bent_most(rigid), (double)bent_most(soft),
                   (double)bent_most(pressed));
     assert_true(bent_most(rigid) < 1e-5f);
@@ -525,6 +526,22 @@ static void test_recipe(void** state)
     ty_aggregate_destroy(pressed);
 }
 
+// Those that a cut leaves lie, bent as they are, where they lie without it.
+static void test_cut_keeps_frames(void** state)
+{
+    (void)state;
+    ty_aggregate* whole = packed(TY_SOLVER_IMPULSE, 0.1f, TY_CUT_NONE, TY_NOT_AT_REST);
+    ty_aggregate* cut = packed(TY_SOLVER_IMPULSE, 0.1f, TY_CUT_PLANE, TY_NOT_AT_REST);
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < whole->instance_count; i++)
+        if (kept < cut->instance_count && whole->transforms[i].t.x <= 0.0f)
+            assert_memory_equal(&whole->transforms[i], &cut->transforms[kept++], sizeof(ty_affine));
+    assert_int_equal(kept, cut->instance_count);
+    assert_true(kept > 15 && kept < whole->instance_count - 15);
+    ty_aggregate_destroy(whole);
+    ty_aggregate_destroy(cut);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -539,6 +556,7 @@ int main(void)
         cmocka_unit_test(test_same_bits_and_energy),
         cmocka_unit_test(test_frame),
         cmocka_unit_test(test_recipe),
+        cmocka_unit_test(test_cut_keeps_frames),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parameters of an element and of the container in a recipe of an aggregate.
+#include "recipe_tables.h"
+
+// --- element ---
+
+static const char* const element_kinds[] = {"rice", "roe",  "ball",   "ice",  "grape",
+                                            "bean", "tofu", "pebble", "mesh", NULL};
+static const char* const cultivars[] = {"japonica", "indica", "aromatic", "glutinous", NULL};
+static const char* const beans[] = {"red", "black", "white", NULL};
+static const char* const roe_presets[] = {"ikura", "tobiko", "tarako", "kazunoko", NULL};
+
+static void roe_set_default(void* def)
+{
+    *(ty_roe_def*)def = ty_element_def_default().roe;
+}
+
+#define OWNER ty_roe_def
+static const ty_param roe_rows[] = {
+    {"preset", TY_PARAM_ENUM, "", 0, 0, roe_presets, NULL, offsetof(OWNER, preset),
+     "eggs of salmon, flying fish, pollock or herring", false},
+    FIELD("diameter", TY_PARAM_FLOAT, "mm", 0, 50, diameter, "mean of the eggs, from 0.2; 0 = of the preset"),
+    FIELD("membrane", TY_PARAM_FLOAT, "mm", 0, 5, membrane,
+          "thickness, a thousandth to a tenth of the diameter; 0 = of the preset"),
+    FIELD("yolk", TY_PARAM_FLOAT, "", 0, 0.5, yolk, "its share of what is within the membrane; 0 = of the preset"),
+    FIELD("lean", TY_PARAM_FLOAT, "deg", 0, 180, lean, "largest angle of the yolk off the top, where it floats"),
+    FIELD("press", TY_PARAM_FLOAT, "", 0, 0.05, press,
+          "how much farther eggs reach than they were packed, so that they meet in small discs"),
+};
+#undef OWNER
+
+static const ty_param_table roe_table = {
+    "aggregate.element.roe",
+    "An egg of fish: a membrane, white in it, a yolk that floats in the white. Each is a body of its own, with the "
+    "material slots membrane, white and yolk.",
+    sizeof(ty_roe_def),
+    roe_set_default,
+    roe_rows,
+    TY_PARAM_COUNT(roe_rows)};
+
+static void element_set_default(void* def)
+{
+    *(ty_element_def*)def = ty_element_def_default();
+}
+
+const char* ty_element_kind_name(const ty_element_def* def)
+{
+    return def->kind == TY_ELEMENT_BEAN ? beans[def->bean] : element_kinds[def->kind];
+}
+
+#define OWNER ty_element_def
+static const ty_param element_rows[] = {
+    {"kind", TY_PARAM_ENUM, "", 0, 0, element_kinds, NULL, offsetof(OWNER, kind), "what one element is", false},
+    FIELD("ratio", TY_PARAM_FLOAT, "", 0, 1e6, ratio, "in a list of elements: how many of these against the others"),
+    {"cultivar", TY_PARAM_ENUM, "", 0, 0, cultivars, NULL, offsetof(OWNER, cultivar),
+     "of rice: its sizes, where none are given", false},
+    {"bean", TY_PARAM_ENUM, "", 0, 0, beans, NULL, offsetof(OWNER, bean), "of beans: the sizes, where none are given",
+     false},
+    FIELD("mesh", TY_PARAM_PATH, "", 0, 0, mesh, "a closed mesh, with kind mesh"),
+    FIELD("length", TY_PARAM_FLOAT, "mm", 0, 500, length,
+          "mean length; 0 = of the kind, of a mesh as its file has it. But for rice, sizes of 0 follow those given"),
+    FIELD("width", TY_PARAM_FLOAT, "mm", 0, 500, width, "mean width, at most the length; 0 = of the kind"),
+    FIELD("thickness", TY_PARAM_FLOAT, "mm", 0, 500, thickness,
+          "mean thickness, to the width, of rice from half of it, else from a fifth; 0 = of the kind"),
+    FIELD("variation", TY_PARAM_FLOAT, "", 0, 0.2, variation, "standard deviation of the sizes, relative"),
+    FIELD("variants", TY_PARAM_INT, "", 1, TY_ELEMENT_MAX_VARIANTS, variants,
+          "how many different meshes are made; of ball, roe and mesh there is one"),
+    FIELD("notch", TY_PARAM_FLOAT, "", 0, 0.3, notch,
+          "depth of the dent of a germ, a hilum or a stem (a third of it), of the width"),
+    FIELD("divisions", TY_PARAM_INT, "", 4, 64, divisions, "cells across the width of a mesh"),
+    FIELD("fit", TY_PARAM_FLOAT, "", 0.01, 0.2, fit,
+          "farthest that balls and surface are apart, of the width; rice has ten balls whatever it is"),
+    {"roe", TY_PARAM_GROUP, "", 0, 0, NULL, &roe_table, offsetof(OWNER, roe), "with kind roe: the egg", false},
+};
+#undef OWNER
+
+const ty_param_table recipe_element = {"aggregate.element",    "What an aggregate is made of.",
+                                       sizeof(ty_element_def), element_set_default,
+                                       element_rows,           TY_PARAM_COUNT(element_rows)};
+
+const ty_param_table* ty_element_params(void)
+{
+    return &recipe_element;
+}
+
+// --- container ---
+
+static const char* const container_kinds[] = {"bowl", "box", "sphere", "dome", "mesh", "ground", NULL};
+static const char* const container_roles[] = {"volume", "vessel", NULL};
+static const char* const cut_kinds[] = {"none", "sphere", "plane", NULL};
+
+static void cut_set_default(void* def)
+{
+    *(ty_cut_def*)def = ty_container_def_default().cut;
+}
+
+#define OWNER ty_cut_def
+static const ty_param cut_rows[] = {
+    {"shape", TY_PARAM_ENUM, "", 0, 0, cut_kinds, NULL, offsetof(OWNER, kind),
+     "a sphere takes what is in it, a plane what is beyond it", false},
+    FIELD("center", TY_PARAM_FLOAT3, "m", -1e4, 1e4, center, "of the sphere, or a point of the plane"),
+    FIELD("radius", TY_PARAM_FLOAT, "m", 0, 1e4, radius, "of the sphere"),
+    FIELD("normal", TY_PARAM_FLOAT3, "", -1, 1, normal, "of the plane, towards what is taken"),
+};
+#undef OWNER
+
+static const ty_param_table cut_table = {
+    "aggregate.container.cut",
+    "What is left out after settling, so that one sees into the pile: each element whose centre lies in the cut.",
+    sizeof(ty_cut_def),
+    cut_set_default,
+    cut_rows,
+    TY_PARAM_COUNT(cut_rows)};
+
+static void container_set_default(void* def)
+{
+    *(ty_container_def*)def = ty_container_def_default();
+}
+
+#define OWNER ty_container_def
+static const ty_param container_rows[] = {
+    {"shape", TY_PARAM_ENUM, "", 0, 0, container_kinds, NULL, offsetof(OWNER, kind),
+     "bowl and box are open at the top; sphere and dome are closed; ground is a plane for a heap", false},
+    FIELD("mesh", TY_PARAM_PATH, "", 0, 0, mesh, "a closed mesh, with shape mesh"),
+    {"role", TY_PARAM_ENUM, "", 0, 0, container_roles, NULL, offsetof(OWNER, role),
+     "of a mesh: the surface of the space that is filled, or of the wall about a hollow open at the top", false},
+    {"cut", TY_PARAM_GROUP, "", 0, 0, NULL, &cut_table, offsetof(OWNER, cut), "what is left out at the end", false},
+    FIELD("radius", TY_PARAM_FLOAT, "m", 0, 1e4, shape.radius,
+          "of bowl (rim, outside), sphere, dome; of the heap's foot on ground, as filled"),
+    FIELD("size", TY_PARAM_FLOAT3, "m", 0, 1e4, shape.size, "half extents of the box"),
+    FIELD("height", TY_PARAM_FLOAT, "m", 0, 1e4, shape.height, "of bowl and dome"),
+    FIELD("thickness", TY_PARAM_FLOAT, "m", 0, 1e4, shape.thickness, "wall of the bowl"),
+    FIELD("foot_radius", TY_PARAM_FLOAT, "m", 0, 1e4, shape.foot_radius, "of the bowl's foot ring"),
+    FIELD("foot_height", TY_PARAM_FLOAT, "m", 0, 1e4, shape.foot_height, "of the bowl's foot ring"),
+    FIELD("curve", TY_PARAM_FLOAT, "", 1, 12, shape.curve,
+          "profile of the bowl: 1 = cone, 2 = parabola, more = fuller"),
+    FIELD("rounding", TY_PARAM_FLOAT, "m", 0, 1e4, shape.rounding, "radius of edges"),
+    FIELD("divisions", TY_PARAM_INT, "", 8, 4096, shape.divisions, "cells around"),
+};
+#undef OWNER
+
+const ty_param_table recipe_container = {"aggregate.container",
+                                         "What the grains lie in. The fields of bowl, box, sphere and dome are "
+                                         "those of the shapes of a scene: give both the "
+                                         "same numbers.",
+                                         sizeof(ty_container_def),
+                                         container_set_default,
+                                         container_rows,
+                                         TY_PARAM_COUNT(container_rows)};
+
+const ty_param_table* ty_container_params(void)
+{
+    return &recipe_container;
+}

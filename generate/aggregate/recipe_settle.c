@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parameters of what happens to the elements: settling, pressing, moisture, a film of it.
+#include "recipe_tables.h"
+
+static const char* const solvers[] = {"impulse", "xpbd", NULL};
+
+static void settle_set_default(void* def)
+{
+    *(ty_settle_def*)def = ty_aggregate_recipe_default().settle;
+}
+
+#define OWNER ty_settle_def
+static const ty_param settle_rows[] = {
+    FIELD("friction", TY_PARAM_FLOAT, "", 0, 2, friction, "Coulomb coefficient, between grains and at walls"),
+    FIELD("rolling", TY_PARAM_FLOAT, "", 0, 0.1, rolling, "rolling resistance, of half the width"),
+    FIELD("max_seconds", TY_PARAM_FLOAT, "s", 0.1, 60, max_seconds, "simulated time after which a pile is not at rest"),
+    FIELD("rate", TY_PARAM_FLOAT, "1/s", 1000, 20000, rate, "substeps per second; deep piles want more"),
+    FIELD("polish", TY_PARAM_INT, "", 0, 5000, polish, "sweeps that take out what overlap is left"),
+    FIELD("cohesion", TY_PARAM_FLOAT, "N/m", -1, 1, cohesion,
+          "surface tension of the liquid between grains; below 0: water, as much as moisture.wet_basis gives"),
+    FIELD("adhesion", TY_PARAM_FLOAT, "J/m^2", 0, 10, adhesion, "work of adhesion of sticky grains, starch about 0.1"),
+    {"solver", TY_PARAM_ENUM, "", 0, 0, solvers, NULL, offsetof(OWNER, solver),
+     "impulse: rigid elements that come to rest; xpbd: elastic ones that bend, run for max_seconds, and creep", false},
+    FIELD("modulus", TY_PARAM_FLOAT, "Pa", 1e3, 1e8, modulus, "Young's, of elastic elements: with xpbd, or pressed"),
+};
+#undef OWNER
+
+const ty_param_table recipe_settle = {"aggregate.settle",    "How the grains come to rest.",
+                                      sizeof(ty_settle_def), settle_set_default,
+                                      settle_rows,           TY_PARAM_COUNT(settle_rows)};
+
+static void press_set_default(void* def)
+{
+    *(ty_press_def*)def = ty_aggregate_recipe_default().press;
+}
+
+#define OWNER ty_press_def
+static const ty_param press_rows[] = {
+    FIELD("strain", TY_PARAM_FLOAT, "", 0, 0.5, strain, "how far, of the height; 0 = not at all"),
+    FIELD("seconds", TY_PARAM_FLOAT, "s", 0.05, 10, seconds,
+          "simulated: down over .4 of it, up from .5 to .8, then left"),
+};
+#undef OWNER
+
+const ty_param_table recipe_press = {
+    "aggregate.press",
+    "A closed container is squeezed towards its lowest point, into an open one comes a lid; then both open "
+    "again. The elements are elastic in it, and stay bent and sheared as they lie at the end.",
+    sizeof(ty_press_def),
+    press_set_default,
+    press_rows,
+    TY_PARAM_COUNT(press_rows)};
+
+static void wetness_set_default(void* def)
+{
+    *(ty_wetness_def*)def = ty_aggregate_recipe_default().moisture;
+}
+
+#define OWNER ty_wetness_def
+static const ty_param wetness_rows[] = {
+    FIELD("variation", TY_PARAM_FLOAT, "", 0, 1, variation, "share of chance in the attribute moisture (-1..1)"),
+    FIELD("drying", TY_PARAM_FLOAT, "", 0, 1, drying, "how much drier the grains at the surface are"),
+    FIELD("wet_basis", TY_PARAM_FLOAT, "", 0.05, 1, wet_basis,
+          "water of the mass of wet grains: cooked 0.62; bridges hold them together from 0.35 on, up to 0.76"),
+};
+#undef OWNER
+
+const ty_param_table recipe_moisture = {"aggregate.moisture",   "The attribute moisture of the grains.",
+                                        sizeof(ty_wetness_def), wetness_set_default,
+                                        wetness_rows,           TY_PARAM_COUNT(wetness_rows)};
+
+static void animate_set_default(void* def)
+{
+    *(ty_animate_def*)def = ty_aggregate_recipe_default().animate;
+}
+
+#define OWNER ty_animate_def
+static const ty_param animate_rows[] = {
+    FIELD("frames", TY_PARAM_INT, "", 0, 10000, frames, "of the film that pack writes to OUT.####.glb; 0 = none"),
+    FIELD("fps", TY_PARAM_FLOAT, "1/s", 1, 1000, fps, "frames per second of simulated time"),
+};
+#undef OWNER
+
+const ty_param_table recipe_animate = {"aggregate.animate",    "The pile as it settles, frame by frame.",
+                                       sizeof(ty_animate_def), animate_set_default,
+                                       animate_rows,           TY_PARAM_COUNT(animate_rows)};
