@@ -40,11 +40,27 @@ void ty_aggregate_destroy(ty_aggregate* aggregate)
     ty_free(aggregate->transforms);
     ty_free(aggregate->prototype_index);
     ty_free(aggregate->ids);
+    ty_free(aggregate->velocities);
+    ty_free(aggregate->spins);
     ty_free(aggregate->attributes);
     ty_free(aggregate->recipe);
     ty_free(aggregate->hash);
     ty_free(aggregate->metrics);
     ty_free(aggregate);
+}
+
+ty_vec3* ty_aggregate_add_velocities(ty_aggregate* aggregate)
+{
+    if (!aggregate->velocities)
+        aggregate->velocities = TY_ALLOC(ty_vec3, aggregate->instance_count);
+    return aggregate->velocities;
+}
+
+ty_vec3* ty_aggregate_add_spins(ty_aggregate* aggregate)
+{
+    if (!aggregate->spins)
+        aggregate->spins = TY_ALLOC(ty_vec3, aggregate->instance_count);
+    return aggregate->spins;
 }
 
 const ty_instance_attribute* ty_aggregate_find_attribute(const ty_aggregate* aggregate, const char* name)

@@ -171,9 +171,42 @@ static ty_status read_matrices(const gatherer* g, int node, uint32_t count, cons
     return TY_OK;
 }
 
+// m of a node applied to a velocity; to a spin, which a mirror turns round and a size leaves as it is, by its
+// cofactors.
+static ty_vec3 map_spin(const ty_affine* m, ty_vec3 w)
+{
+    ty_vec3 c = ty_mul(ty_cross(m->y, m->z), w.x);
+    c = ty_add(ty_mad(c, ty_cross(m->z, m->x), w.y), ty_mul(ty_cross(m->x, m->y), w.z));
+    float size = ty_pow(fabsf(ty_affine_determinant(m)), 2.0f / 3.0f);
+    return size > 0.0f ? ty_mul(c, 1.0f / size) : c;
+}
+
+// _VELOCITY or _SPIN where a node has it as vectors.
+static ty_status read_motion(const gatherer* g, int node, uint32_t count, const uint32_t* places, bool spin)
+{
+    const char* semantic = spin ? "_SPIN" : "_VELOCITY";
+    const float none[3] = {0};
+    int accessor = ty_gltf_instance_accessor(g->gltf, node, semantic);
+    if (accessor < 0 || ty_gltf_accessor_width(g->gltf, accessor) != 3)
+        return TY_OK;
+    ty_status status = read_column(g, node, semantic, 3, count, none);
+    if (status != TY_OK)
+        return status;
+    const ty_affine* map = g->is_single ? NULL : &g->node_maps[node];
+    ty_vec3* out = spin ? ty_aggregate_add_spins(g->aggregate) : ty_aggregate_add_velocities(g->aggregate);
+    for (uint32_t i = 0; i < count; i++)
+    {
+        ty_vec3 v = ((const ty_vec3*)g->floats)[i];
+        if (map && !is_identity(map))
+            v = spin ? map_spin(map, v) : ty_map_vector(map, v);
+        out[places[i]] = v;
+    }
+    return TY_OK;
+}
+
 static ty_status read_scalars(const gatherer* g, int node, uint32_t count, const uint32_t* places)
 {
-    static const char* const own[] = {"id", "order", "matrix0", "matrix1", "matrix2"};
+    static const char* const own[] = {"id", "order", "matrix0", "matrix1", "matrix2", "velocity", "spin"};
     const char* semantic;
     for (int k = 0; (semantic = ty_gltf_instance_semantic(g->gltf, node, k)) != NULL; k++)
     {
@@ -217,6 +250,10 @@ static ty_status read_node(gatherer* g, int node)
         status = read_placements(g, node, count, places);
     if (status == TY_OK)
         status = read_matrices(g, node, count, places);
+    if (status == TY_OK)
+        status = read_motion(g, node, count, places, false);
+    if (status == TY_OK)
+        status = read_motion(g, node, count, places, true);
     if (status == TY_OK)
         status = read_scalars(g, node, count, places);
     for (uint32_t i = 0; i < count && status == TY_OK; i++)

@@ -7,8 +7,14 @@
 
 typedef struct pipe_header
 {
-    uint32_t magic, prototype_count, instance_count, attribute_count;
+    uint32_t magic, prototype_count, instance_count, attribute_count, parts;
 } pipe_header;
+
+enum
+{
+    HAS_VELOCITIES = 1,
+    HAS_SPINS = 2
+};
 
 enum
 {
@@ -96,7 +102,8 @@ ty_status ty_aggregate_send(int output_fd, const ty_aggregate* aggregate, ty_err
 {
     size_t n = aggregate->instance_count;
     pipe_header header = {MAGIC, (uint32_t)aggregate->prototype_count, aggregate->instance_count,
-                          (uint32_t)aggregate->attribute_count};
+                          (uint32_t)aggregate->attribute_count,
+                          (aggregate->velocities ? HAS_VELOCITIES : 0u) | (aggregate->spins ? HAS_SPINS : 0u)};
     ty_status status = ty_child_write(output_fd, &header, sizeof header, error);
     for (int i = 0; i < aggregate->prototype_count && status == TY_OK; i++)
         status = ty_mesh_send(output_fd, aggregate->prototypes[i], error);
@@ -106,6 +113,10 @@ ty_status ty_aggregate_send(int output_fd, const ty_aggregate* aggregate, ty_err
         status = send_array(output_fd, aggregate->prototype_index, n, sizeof(uint32_t), error);
     if (status == TY_OK)
         status = send_array(output_fd, aggregate->ids, n, sizeof(uint32_t), error);
+    if (status == TY_OK)
+        status = send_array(output_fd, aggregate->velocities, n, sizeof(ty_vec3), error);
+    if (status == TY_OK)
+        status = send_array(output_fd, aggregate->spins, n, sizeof(ty_vec3), error);
     for (int i = 0; i < aggregate->attribute_count && status == TY_OK; i++)
         status = send_attribute(output_fd, aggregate->attributes[i].name, 1, TY_ATTRIBUTE_NUMBERS,
                                 aggregate->attributes[i].values, n, error);
@@ -235,7 +246,7 @@ ty_status ty_mesh_take(ty_receiver* r, int index, ty_mesh** out)
     return status == TY_OK ? finish_mesh(r, mesh, index, header.parts & HAS_NORMALS) : status;
 }
 
-static ty_status take_instances(ty_receiver* r, ty_aggregate* a, uint32_t attribute_count)
+static ty_status take_instances(ty_receiver* r, ty_aggregate* a, const pipe_header* sent)
 {
     size_t n = a->instance_count;
     ty_status status = ty_take(r, a->transforms, n, sizeof(ty_affine));
@@ -243,7 +254,11 @@ static ty_status take_instances(ty_receiver* r, ty_aggregate* a, uint32_t attrib
         status = ty_take(r, a->prototype_index, n, sizeof(uint32_t));
     if (status == TY_OK)
         status = ty_take(r, a->ids, n, sizeof(uint32_t));
-    for (uint32_t i = 0; i < attribute_count && status == TY_OK; i++)
+    if (status == TY_OK && (sent->parts & HAS_VELOCITIES))
+        status = take_new(r, (void**)&a->velocities, n, sizeof(ty_vec3));
+    if (status == TY_OK && (sent->parts & HAS_SPINS))
+        status = take_new(r, (void**)&a->spins, n, sizeof(ty_vec3));
+    for (uint32_t i = 0; i < sent->attribute_count && status == TY_OK; i++)
     {
         attribute_header header;
         status = take_attribute_header(r, &header);
@@ -272,7 +287,7 @@ ty_status ty_aggregate_take(ty_receiver* r, ty_aggregate** out)
     for (uint32_t i = 0; i < header.prototype_count && status == TY_OK; i++)
         status = ty_mesh_take(r, (int)i, &a->prototypes[i]);
     if (status == TY_OK)
-        status = take_instances(r, a, header.attribute_count);
+        status = take_instances(r, a, &header);
     if (status != TY_OK)
         ty_aggregate_destroy(a);
     else

@@ -4,8 +4,8 @@
 #include "file_sink.h"
 #include "glb.h"
 #include "ply.h"
+#include <string.h>
 #include <tsuya/base/file.h>
-#include <tsuya/base/log.h>
 #include <tsuya/geometry/aggregate_export.h>
 
 // Beyond some parts in a million scale_x .. scale_z are written too.
@@ -37,9 +37,20 @@ static void put_header(ty_sink* text, const ty_aggregate* a, bool stretched)
     ty_sink_format(text, "property uint id\n");
     if (a->prototype_count > 1)
         ty_sink_format(text, "property uint prototype\n");
+    if (a->velocities)
+        ty_sink_format(text, "property float vx\nproperty float vy\nproperty float vz\n");
+    if (a->spins)
+        ty_sink_format(text, "property float wx\nproperty float wy\nproperty float wz\n");
     for (int k = 0; k < a->attribute_count; k++)
         ty_sink_format(text, "property float %s\n", ty_aggregate_attribute_by_name(a, k)->name);
     ty_sink_format(text, "end_header\n");
+}
+
+static void put_vector(ty_sink* text, ty_vec3 v)
+{
+    ty_sink_f32(text, v.x);
+    ty_sink_f32(text, v.y);
+    ty_sink_f32(text, v.z);
 }
 
 static void put_point(ty_sink* text, const ty_aggregate* a, const float* const* attributes, uint32_t i,
@@ -51,30 +62,42 @@ static void put_point(ty_sink* text, const ty_aggregate* a, const float* const* 
         ty_sink_f32(text, place[k]);
     ty_sink_f32(text, stretched ? 1.0f : p->scale.x);
     if (stretched)
-    {
-        ty_sink_f32(text, p->scale.x);
-        ty_sink_f32(text, p->scale.y);
-        ty_sink_f32(text, p->scale.z);
-    }
+        put_vector(text, p->scale);
     ty_sink_u32(text, a->ids[i]);
     if (a->prototype_count > 1)
         ty_sink_u32(text, a->prototype_index[i]);
+    if (a->velocities)
+        put_vector(text, a->velocities[i]);
+    if (a->spins)
+        put_vector(text, a->spins[i]);
     for (int k = 0; k < a->attribute_count; k++)
         ty_sink_f32(text, attributes[k][i]);
+}
+
+// The names of the columns that every such file has, or may have.
+static ty_status check_names(const ty_aggregate* a, const char* path, ty_error* error)
+{
+    static const char* const own[] = {"x",        "y",      "z",       "orient_x", "orient_y", "orient_z",
+                                      "orient_w", "pscale", "scale_x", "scale_y",  "scale_z",  "prototype",
+                                      "vx",       "vy",     "vz",      "wx",       "wy",       "wz"};
+    for (int k = 0; k < a->attribute_count; k++)
+        for (size_t i = 0; i < sizeof own / sizeof own[0]; i++)
+            if (strcmp(a->attributes[k].name, own[i]) == 0)
+                return ty_error_set_at(error, TY_BAD_INPUT, path, 0, 0, "\"%s\" cannot name an attribute of points",
+                                       own[i]);
+    return TY_OK;
 }
 
 ty_status ty_aggregate_write_points(const char* path, const ty_aggregate* a, ty_error* error)
 {
     ty_status status = ty_aggregate_check_content(a, path, error);
+    if (status == TY_OK)
+        status = check_names(a, path, error);
+    ty_placement* placements = NULL;
+    if (status == TY_OK)
+        status = ty_aggregate_split(a, path, "points", &placements, error);
     if (status != TY_OK)
         return status;
-    ty_placement* placements = TY_TRY_ALLOC(ty_placement, a->instance_count);
-    if (!placements)
-        return ty_error_set_at(error, TY_NO_MEMORY, path, 0, 0, "no memory for %u instances", a->instance_count);
-    uint32_t sheared = ty_aggregate_split(a, placements);
-    if (sheared > 0)
-        ty_log(TY_LOG_WARNING, "%s: %u of %u instances are sheared, which points cannot hold", path, sheared,
-               a->instance_count);
     bool stretched = false;
     for (uint32_t i = 0; i < a->instance_count && !stretched; i++)
         stretched = is_stretched(placements[i].scale);

@@ -48,6 +48,8 @@ ty_status ty_aggregate_validate(const char* path, const ty_aggregate* a, ty_erro
         if (!ty_placement_is_regular(&a->transforms[i]))
             return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "instance %u: its matrix is singular or not finite",
                                    i);
+        if ((a->velocities && !ty_is_finite3(a->velocities[i])) || (a->spins && !ty_is_finite3(a->spins[i])))
+            return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "instance %u: its velocity is not finite", i);
         for (int k = 0; k < a->attribute_count; k++)
             if (!isfinite(a->attributes[k].values[i]))
                 return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "instance %u: %s is not finite", i,

@@ -151,6 +151,22 @@ static void fill_instance_attribute(const ty_aggregate* a, const char* name, con
     }
 }
 
+// What moves in the mesh is its vertices.
+static void fill_velocity(const ty_aggregate* a, ty_mesh* out)
+{
+    if ((!a->velocities && !a->spins) || ty_mesh_find_attribute(out, "velocity"))
+        return;
+    ty_vec3* at = (ty_vec3*)ty_mesh_add_attribute(out, "velocity", 3);
+    const ty_vec3 none = {0.0f, 0.0f, 0.0f}, *position = out->positions;
+    for (uint32_t i = 0; i < a->instance_count; i++)
+    {
+        ty_vec3 v = a->velocities ? a->velocities[i] : none, w = a->spins ? a->spins[i] : none;
+        uint32_t n = a->prototypes[a->prototype_index[i]]->vertex_count;
+        for (uint32_t k = 0; k < n; k++)
+            *at++ = ty_add(v, ty_cross(w, ty_sub(*position++, a->transforms[i].t)));
+    }
+}
+
 ty_status ty_aggregate_realise(const ty_aggregate* a, ty_mesh** out, ty_error* error)
 {
     *out = NULL;
@@ -174,6 +190,7 @@ ty_status ty_aggregate_realise(const ty_aggregate* a, ty_mesh** out, ty_error* e
     fill_instance_attribute(a, "id", NULL, mesh);
     for (int k = 0; k < a->attribute_count; k++)
         fill_instance_attribute(a, a->attributes[k].name, a->attributes[k].values, mesh);
+    fill_velocity(a, mesh);
     mesh->recipe = a->recipe ? ty_string_copy(a->recipe) : NULL;
     mesh->hash = a->hash ? ty_string_copy(a->hash) : NULL;
     ty_mesh_compute_bounds(mesh);

@@ -6,7 +6,6 @@
 #include "placement.h"
 #include <string.h>
 #include <tsuya/base/file.h>
-#include <tsuya/base/log.h>
 #include <tsuya/geometry/aggregate_export.h>
 
 // --- values ---
@@ -177,6 +176,13 @@ static void put_scale(ty_sink* text, const void* context, size_t index)
     ty_sink_vector(text, &((const ty_placement*)context)[index].scale.x, 3);
 }
 
+// USD counts in degrees here.
+static void put_degrees(ty_sink* text, const void* context, size_t index)
+{
+    ty_vec3 w = ty_mul(((const ty_vec3*)context)[index], 180.0f / TY_PI);
+    ty_sink_vector(text, &w.x, 3);
+}
+
 // Of what is written, so that the same comes out of a file read back.
 static ty_bounds instance_bounds(const ty_aggregate* a, const ty_placement* placements)
 {
@@ -198,6 +204,8 @@ static void put_instances(ty_sink* text, const ty_aggregate* a, const ty_placeme
 {
     static const char indent[] = "    ", vertex[] = " (\n        interpolation = \"vertex\"\n    )";
     size_t n = a->instance_count;
+    if (a->spins)
+        put_array(text, indent, "vector3f[] angularVelocities", n, put_degrees, a->spins, "");
     put_extent(text, indent, instance_bounds(a, placements));
     put_array(text, indent, "int64[] ids", n, put_whole, a->ids, "");
     put_array(text, indent, "quath[] orientations", n, put_rotation, placements, "");
@@ -216,6 +224,8 @@ static void put_instances(ty_sink* text, const ty_aggregate* a, const ty_placeme
         ty_sink_format(text, "%s</Aggregate/Prototypes/prototype_%d>", p > 0 ? ", " : "", p);
     ty_sink_format(text, "]\n");
     put_array(text, indent, "float3[] scales", n, put_scale, placements, "");
+    if (a->velocities)
+        put_array(text, indent, "vector3f[] velocities", n, put_vec3, a->velocities, "");
 }
 
 static void put_head(ty_sink* text, const ty_aggregate* a)
@@ -243,13 +253,10 @@ ty_status ty_aggregate_write_usd(const char* path, const ty_aggregate* a, ty_err
     ty_status status = ty_aggregate_check_content(a, path, error);
     if (status != TY_OK)
         return status;
-    ty_placement* placements = TY_TRY_ALLOC(ty_placement, a->instance_count);
-    if (!placements)
-        return ty_error_set_at(error, TY_NO_MEMORY, path, 0, 0, "no memory for %u instances", a->instance_count);
-    uint32_t sheared = ty_aggregate_split(a, placements);
-    if (sheared > 0)
-        ty_log(TY_LOG_WARNING, "%s: %u of %u instances are sheared, which USD's instancer cannot hold", path, sheared,
-               a->instance_count);
+    ty_placement* placements;
+    status = ty_aggregate_split(a, path, "USD's instancer", &placements, error);
+    if (status != TY_OK)
+        return status;
     ty_sink text = {0};
     put_head(&text, a);
     put_instances(&text, a, placements);

@@ -4,6 +4,7 @@
 #include "glb_mesh.h"
 #include <stdio.h>
 #include <string.h>
+#include <tsuya/base/log.h>
 #include <tsuya/base/memory.h>
 #include <tsuya/geometry/aggregate.h>
 
@@ -23,7 +24,7 @@ static bool name_is_free(const char* name, const char* const* reserved)
 
 static ty_status check_attributes(const ty_aggregate* a, const char* path, ty_error* error)
 {
-    static const char* const reserved[] = {"id", "order", "matrix0", "matrix1", "matrix2", NULL};
+    static const char* const reserved[] = {"id", "order", "matrix0", "matrix1", "matrix2", "velocity", "spin", NULL};
     if (a->attribute_count > TY_GLTF_ATTRIBUTES_MAX)
         return ty_error_set_at(error, TY_BAD_INPUT, path, 0, 0, "%d attributes; at most %d are written",
                                a->attribute_count, TY_GLTF_ATTRIBUTES_MAX);
@@ -71,6 +72,8 @@ ty_status ty_aggregate_check_content(const ty_aggregate* a, const char* path, ty
         if (!ty_placement_is_regular(&a->transforms[i]))
             return ty_error_set_at(error, TY_BAD_INPUT, path, 0, 0, "instance %u: its matrix is singular or not finite",
                                    i);
+        if ((a->velocities && !ty_is_finite3(a->velocities[i])) || (a->spins && !ty_is_finite3(a->spins[i])))
+            return ty_error_set_at(error, TY_BAD_INPUT, path, 0, 0, "instance %u: its velocity is not finite", i);
     }
     ty_status status = check_attributes(a, path, error);
     return status == TY_OK ? check_prototypes(a, path, error) : status;
@@ -93,12 +96,19 @@ const ty_instance_attribute* ty_aggregate_attribute_by_name(const ty_aggregate* 
     return found;
 }
 
-uint32_t ty_aggregate_split(const ty_aggregate* a, ty_placement* out)
+ty_status ty_aggregate_split(const ty_aggregate* a, const char* path, const char* holder, ty_placement** out,
+                             ty_error* error)
 {
     uint32_t sheared = 0;
+    *out = TY_TRY_ALLOC(ty_placement, a->instance_count);
+    if (!*out)
+        return ty_error_set_at(error, TY_NO_MEMORY, path, 0, 0, "no memory for %u instances", a->instance_count);
     for (uint32_t i = 0; i < a->instance_count; i++)
-        sheared += !ty_placement_split(&a->transforms[i], &out[i]);
-    return sheared;
+        sheared += !ty_placement_split(&a->transforms[i], &(*out)[i]);
+    if (sheared > 0)
+        ty_log(TY_LOG_WARNING, "%s: %u of %u instances are sheared, which %s cannot hold", path, sheared,
+               a->instance_count, holder);
+    return TY_OK;
 }
 
 // The instances of one prototype in order, and scratch for their columns.
@@ -155,6 +165,15 @@ static void add_matrices(ty_glb_builder* builder, const group* g, json_t* attrib
     }
 }
 
+static void add_vectors(ty_glb_builder* builder, const group* g, const char* name, const ty_vec3* values,
+                        json_t* attributes)
+{
+    ty_vec3* v = (ty_vec3*)g->values;
+    for (uint32_t i = 0; i < g->count; i++)
+        v[i] = values[g->members[i]];
+    ty_glb_set_semantic(attributes, name, ty_glb_add(builder, v, g->count, TY_GLTF_FLOAT, 3, 0));
+}
+
 static void add_scalars(ty_glb_builder* builder, const group* g, bool ordered, json_t* attributes)
 {
     const ty_aggregate* a = g->aggregate;
@@ -179,6 +198,10 @@ static json_t* add_node(ty_glb_builder* builder, const group* g, uint32_t protot
     add_placements(builder, g, attributes);
     if (g->sheared)
         add_matrices(builder, g, attributes);
+    if (g->aggregate->velocities)
+        add_vectors(builder, g, "velocity", g->aggregate->velocities, attributes);
+    if (g->aggregate->spins)
+        add_vectors(builder, g, "spin", g->aggregate->spins, attributes);
     add_scalars(builder, g, ordered, attributes);
     return json_pack("{s:i, s:{s:{s:o}}}", "mesh", (int)prototype, "extensions", TY_GLTF_INSTANCING, "attributes",
                      attributes);

@@ -30,6 +30,8 @@ static bool instance_type_fits(const char* semantic, const ty_gltf_accessor* a)
         return real && a->width == 3;
     if (strcmp(semantic, "ROTATION") == 0)
         return (real || packed) && a->width == 4;
+    if (strcmp(semantic, "_VELOCITY") == 0 || strcmp(semantic, "_SPIN") == 0)
+        return real || a->width != 3;
     // Vectors under other names belong to other programs and are left out by the reader.
     return a->width != 1 || real || whole;
 }

@@ -50,6 +50,22 @@ static const char* const orients[][4] = {
 };
 static const char* const scales[][4] = {{"scale_x", "scale_y", "scale_z"}, {"scale[0]", "scale[1]", "scale[2]"}};
 
+static const char* const velocities[][4] = {{"vx", "vy", "vz"}, {"v[0]", "v[1]", "v[2]"}, {"v_x", "v_y", "v_z"}};
+static const char* const spins[][4] = {{"wx", "wy", "wz"}, {"w[0]", "w[1]", "w[2]"}, {"w_x", "w_y", "w_z"}};
+
+static void move_points(columns* c, ty_aggregate* out)
+{
+    const float *v[3], *w[3];
+    if (use_vector(c, velocities, sizeof velocities / sizeof velocities[0], 3, v))
+        (void)ty_aggregate_add_velocities(out);
+    if (use_vector(c, spins, sizeof spins / sizeof spins[0], 3, w))
+        (void)ty_aggregate_add_spins(out);
+    for (uint32_t i = 0; i < out->instance_count && out->velocities; i++)
+        out->velocities[i] = ty_vec3_make(v[0][i], v[1][i], v[2][i]);
+    for (uint32_t i = 0; i < out->instance_count && out->spins; i++)
+        out->spins[i] = ty_vec3_make(w[0][i], w[1][i], w[2][i]);
+}
+
 static void place_points(columns* c, const float* const xyz[3], ty_aggregate* out)
 {
     const float *orient[4], *scale[3], *id = use_column(c, "id");
@@ -113,6 +129,7 @@ static ty_status build(const char* name, const ply_points* points, const ty_mesh
                                (unsigned long long)points->count);
     }
     place_points(&c, xyz, a);
+    move_points(&c, a);
     add_attributes(&c, a);
     *out = a;
     return TY_OK;

@@ -89,6 +89,8 @@ static bool describe_difference(const ty_aggregate* a, int attribute_count, cons
     else if (other_attribute(a, attribute_count, b))
         (void)ty_error_set(why, TY_BAD_FILE, "'%s' is an attribute of some of the files only",
                            other_attribute(a, attribute_count, b));
+    else if (!a->velocities != !b->velocities || !a->spins != !b->spins)
+        (void)ty_error_set(why, TY_BAD_FILE, "velocities or spins stand in some of the files only");
     else
         return false;
     return true;
@@ -126,6 +128,10 @@ static void move_instances(ty_aggregate* out, int attribute_count, const ty_aggr
     for (int i = 0; i < attribute_count; ++i)
         memcpy(out->attributes[i].values, ty_aggregate_find_attribute(from, out->attributes[i].name)->values,
                out->instance_count * sizeof(float));
+    if (out->velocities)
+        memcpy(out->velocities, from->velocities, out->instance_count * sizeof(*out->velocities));
+    if (out->spins)
+        memcpy(out->spins, from->spins, out->instance_count * sizeof(*out->spins));
     for (int i = attribute_count; i < out->attribute_count; ++i)
         ty_compute_height(out, out->attributes[i].values); // the one that the scene makes
 }

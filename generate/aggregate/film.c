@@ -17,10 +17,18 @@ static ty_status film_show(kit* k, int frame, const ty_aggregate* first, const t
     uint32_t count = (uint32_t)ty_pile_count(k->pile);
     const ty_body* bodies = ty_pile_bodies(k->pile);
     shown.transforms = TY_ALLOC(ty_affine, count);
+    shown.velocities = TY_ALLOC(ty_vec3, count);
+    shown.spins = TY_ALLOC(ty_vec3, count);
     for (uint32_t i = 0; i < count; i++)
+    {
         shown.transforms[i] = body_transform(&bodies[i]);
+        shown.velocities[i] = bodies[i].velocity;
+        shown.spins[i] = bodies[i].spin;
+    }
     ty_status status = sink->put(sink->context, frame, &shown, error);
     ty_free(shown.transforms);
+    ty_free(shown.velocities);
+    ty_free(shown.spins);
     ty_free(shown.metrics);
     ty_free(shown.recipe);
     ty_free(shown.hash);

@@ -4,6 +4,7 @@
 The USD text is parsed and held against UsdGeomPointInstancer and UsdGeomMesh, the GLB against glTF 2.0 and
 EXT_mesh_gpu_instancing, and the two against one another."""
 import json
+import math
 import re
 import struct
 import sys
@@ -112,10 +113,11 @@ class Reader:
 
 
 INSTANCER = {"protoIndices": "int[]", "ids": "int64[]", "positions": "point3f[]", "orientations": "quath[]",
-             "orientationsf": "quatf[]", "scales": "float3[]", "extent": "float3[]", "prototypes": "rel"}
+             "orientationsf": "quatf[]", "velocities": "vector3f[]", "angularVelocities": "vector3f[]",
+             "scales": "float3[]", "extent": "float3[]", "prototypes": "rel"}
 MESH = {"points": "point3f[]", "normals": "normal3f[]", "faceVertexCounts": "int[]", "faceVertexIndices": "int[]",
         "subdivisionScheme": "token", "extent": "float3[]", "material:binding": "rel"}
-WIDTHS = {"point3f[]": 3, "normal3f[]": 3, "float3[]": 3, "quath[]": 4, "quatf[]": 4, "texCoord2f[]": 2}
+WIDTHS = {"point3f[]": 3, "normal3f[]": 3, "float3[]": 3, "vector3f[]": 3, "quath[]": 4, "quatf[]": 4, "texCoord2f[]": 2}
 
 
 def check_attributes(prim, schema, count):
@@ -172,6 +174,8 @@ def read_usd(path):
     check_attributes(root, INSTANCER, n)
     for name in ("positions", "orientations", "orientationsf", "scales", "ids"):
         check(len(a[name]) == n, f"USD: {len(a[name])} {name} for {n} instances")
+    for name in ("velocities", "angularVelocities"):
+        check(len(a.get(name, a["ids"])) == n, f"USD: {name} for {n} instances")
     check(len(set(a["ids"])) == n, "USD: ids differ")
     check(all(0 <= i < len(a["prototypes"]) for i in a["protoIndices"]), "USD: protoIndices")
     check(all(abs(sum(c * c for c in q) - 1) < 1e-5 for q in a["orientationsf"]), "USD: unit quaternions")
@@ -266,5 +270,11 @@ for i, identity in enumerate(usd["ids"]):
     check(same((w, x, y, z), usd["orientationsf"][i]), f"id {identity}: orientation")
     check(same(one["SCALE"], usd["scales"][i]), f"id {identity}: scale")
     check(same(one["_MOISTURE"], (usd["primvars:moisture"][i],)), f"id {identity}: moisture")
+    check(("_VELOCITY" in one, "_SPIN" in one) == ("velocities" in usd, "angularVelocities" in usd), "velocities in both")
+    if "_VELOCITY" in one:
+        check(same(one["_VELOCITY"], usd["velocities"][i]), f"id {identity}: velocity")
+        degrees = [math.degrees(c) for c in one["_SPIN"]]
+        check(all(abs(p - q) <= 1e-6 * max(1, abs(p)) for p, q in zip(degrees, usd["angularVelocities"][i])),
+              f"id {identity}: spin in degrees")
     check(one["mesh"] == usd["protoIndices"][i], f"id {identity}: prototype")
 sys.exit(1 if failures else 0)

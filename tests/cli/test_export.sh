@@ -43,6 +43,16 @@ grep -Eq '^  speed, root mean square: [0-9.e-]+ mm/s$' out.txt || fail "no speed
 grep -q '_' out.txt && fail "a metric without words"
 expect 0 "$tsuya" info film.03.glb --json
 prints '"speed_rms_mm_s": '
+python3 - film.03.glb <<'P' || fail "a film without velocities"
+import json, struct, sys
+data = open(sys.argv[1], "rb").read()
+root = json.loads(data[20:20 + struct.unpack_from("<I", data, 12)[0]])
+for node in root["nodes"]:
+    names = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]
+    assert root["accessors"][names["_VELOCITY"]]["type"] == root["accessors"][names["_SPIN"]]["type"] == "VEC3"
+P
+expect 0 "$tsuya" export film.03.glb -o film.usda
+python3 "$TSUYA_SOURCE/tests/cli/export_files.py" film.03.glb film.usda || fail "velocities: not as the schema says"
 cmp -s film.01.glb film.03.glb && fail "nothing moves"
 expect 3 "$tsuya" pack heap.yaml -o 'none.##.glb'
 says "animate.frames"

@@ -18,6 +18,7 @@ enum
 typedef struct film
 {
     ty_affine transforms[FRAMES][GRAINS];
+    ty_vec3 velocities[FRAMES][GRAINS], spins[FRAMES][GRAINS];
     ty_mesh* prototypes[2];
     int shown, fails_at;
 } film;
@@ -37,7 +38,9 @@ static ty_status keep(void* context, int frame, ty_aggregate* a, ty_error* error
     assert_memory_equal(f->prototypes, a->prototypes, sizeof f->prototypes);
     for (uint32_t i = 0; i < GRAINS; i++)
         assert_int_equal(a->ids[i], i);
-    memcpy(f->transforms[frame - 1], a->transforms, sizeof f->transforms[0]);
+    memcpy(f->transforms[(frame - 1) % FRAMES], a->transforms, sizeof f->transforms[0]);
+    memcpy(f->velocities[(frame - 1) % FRAMES], a->velocities, sizeof f->velocities[0]);
+    memcpy(f->spins[(frame - 1) % FRAMES], a->spins, sizeof f->spins[0]);
     return TY_OK;
 }
 
@@ -81,6 +84,34 @@ static void falls_and_rests(void** state)
     assert_true(mean_height(&f, 1) < mean_height(&f, 0) - 0.3e-3);
     assert_true(largest_move(&f, 1) > 2e-3f);
     assert_true(largest_move(&f, FRAMES - 1) < 0.1e-3f);
+}
+
+// One substep a frame: the velocities are those with which the instances came to where they are, the spins too.
+static void velocities_tell_moves(void** state)
+{
+    (void)state;
+    static film f;
+    ty_aggregate_recipe recipe = recipe_make();
+    recipe.settle.rate = 1000.0f;
+    recipe.animate.fps = 1000.0f;
+    recipe.animate.frames = 14 * FRAMES;
+    ty_error error;
+    ty_aggregate_sink sink = {keep, &f};
+    assert_int_equal(ty_aggregate_film(&recipe, NULL, &sink, &error), TY_OK);
+    double moved = 0.0, off = 0.0, turned = 0.0, beside = 0.0;
+    for (int i = 0; i < GRAINS; i++)
+    {
+        const ty_affine *a = &f.transforms[FRAMES - 2][i], *b = &f.transforms[FRAMES - 1][i];
+        ty_vec3 v = ty_mul(ty_sub(b->t, a->t), 1000.0f),
+                w = ty_mul(ty_cross(a->x, b->x), 1000.0f / ty_length_sqr(a->x));
+        w = ty_add(w, ty_mul(ty_add(ty_cross(a->y, b->y), ty_cross(a->z, b->z)), 1000.0f / ty_length_sqr(a->y)));
+        moved += (double)ty_length(v);
+        off += (double)ty_length(ty_sub(v, f.velocities[FRAMES - 1][i]));
+        turned += (double)ty_length(ty_mul(w, 0.5f)); // each axis tells what lies across it
+        beside += (double)ty_length(ty_sub(ty_mul(w, 0.5f), f.spins[FRAMES - 1][i]));
+    }
+    assert_true(moved > 0.0 && off < 0.05 * moved); // the relax sweep comes after the move
+    assert_true(turned > 0.0 && beside < 0.1 * turned);
 }
 
 // Twice the frames a second: every second frame is the same.
@@ -128,6 +159,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(falls_and_rests),
+        cmocka_unit_test(velocities_tell_moves),
         cmocka_unit_test(frames_are_moments),
         cmocka_unit_test(refused),
     };

@@ -19,6 +19,8 @@ typedef struct ty_aggregate
     ty_affine* transforms;     // [instance_count] prototype to aggregate space
     uint32_t* prototype_index; // [instance_count]
     uint32_t* ids;             // [instance_count]
+    ty_vec3* velocities;       // [instance_count] m/s, of the instance's origin; NULL = none are known
+    ty_vec3* spins;            // [instance_count] rad/s, about it, in aggregate space; NULL = none are known
     ty_instance_attribute* attributes;
     int attribute_count;
     char* recipe;  // the text that made it, or NULL
@@ -29,14 +31,16 @@ typedef struct ty_aggregate
 TY_CHECKED ty_aggregate* ty_aggregate_create(uint32_t instance_count, int prototype_count); // NULL: no memory
 void ty_aggregate_destroy(ty_aggregate* aggregate);                                         // NULL is allowed
 float* ty_aggregate_add_attribute(ty_aggregate* aggregate, const char* name);               // zeros, owned
+ty_vec3* ty_aggregate_add_velocities(ty_aggregate* aggregate); // zeros where there are none yet, owned
+ty_vec3* ty_aggregate_add_spins(ty_aggregate* aggregate);      // the same
 const ty_instance_attribute* ty_aggregate_find_attribute(const ty_aggregate* aggregate, const char* name);
 
-// TRANSLATION, ROTATION, SCALE (and _MATRIX0..2 where an instance is sheared), _ID, every attribute as _NAME; one node
-// a prototype; recipe, hash and metrics in the asset's extras. A prototype's slot, where it has one, is a material of
-// that name. Equal input, equal bytes. Atomic.
+// TRANSLATION, ROTATION, SCALE (and _MATRIX0..2 where an instance is sheared), _ID, _VELOCITY and _SPIN where they are
+// known, every attribute as _NAME; one node a prototype; recipe, hash and metrics in the asset's extras. A prototype's
+// slot, where it has one, is a material of that name. Equal input, equal bytes. Atomic.
 TY_CHECKED ty_status ty_aggregate_write(const char* path, const ty_aggregate* aggregate, ty_error* error);
 
-// Reads GLB in a child process after our own header checks; also PLY points (x y z, orient, pscale, scalar attributes)
+// Reads GLB in a child process after our own header checks; also PLY points (x y z, orient, pscale, v, w, attributes)
 // with the given prototype mesh (NULL for GLB). An empty aggregate, missing prototype, singular matrix, or non-finite
 // value is TY_BAD_FILE that names the instance.
 TY_CHECKED ty_status ty_aggregate_read(const char* path, const ty_mesh* points_prototype, ty_aggregate** out,
