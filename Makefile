@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The front door. `make demo` and `make test` install what is missing (they say so first); `make build` installs nothing.
-.PHONY: build demo test setup mutations fuzz bench bench-trace bench-textures bench-shading bench-cycles format check clean
+.PHONY: build demo test test-long setup mutations fuzz bench bench-trace bench-textures bench-shading bench-cycles format check clean
 
 build:
 	@.ci/build release
@@ -14,6 +14,10 @@ demo: setup
 test: setup
 	@.ci/build release
 	@.ci/test release
+
+test-long: setup
+	@.ci/build release
+	@.ci/test release -L long
 
 mutations: setup
 	@tests/mutations/run
