@@ -105,7 +105,7 @@ void body_grid_after(const body_grid* g, int i, body_meet_fn* meet, const void* 
         }
 }
 
-bool body_grid_any(const body_grid* g, ty_vec3 p, body_hold_fn* hold, const void* owner)
+int body_grid_find(const body_grid* g, ty_vec3 p, body_hold_fn* hold, const void* owner)
 {
     int x = coordinate(g, p.x, g->low.x, 0), y = coordinate(g, p.y, g->low.y, 1), z = coordinate(g, p.z, g->low.z, 2);
     for (int k = z > 0 ? z - 1 : 0; k <= z + 1 && k < g->size[2]; k++)
@@ -115,9 +115,9 @@ bool body_grid_any(const body_grid* g, ty_vec3 p, body_hold_fn* hold, const void
             int begin = g->start[row + (x > 0 ? x - 1 : 0)], end = g->start[row + (x + 1 < g->size[0] ? x + 1 : x) + 1];
             for (int s = begin; s < end; s++)
                 if (hold(owner, g->sorted[s], p))
-                    return true;
+                    return g->sorted[s];
         }
-    return false;
+    return -1;
 }
 
 // --- colours ---

@@ -37,9 +37,9 @@ void body_grid_destroy(body_grid* grid);
 typedef bool body_meet_fn(const void* owner, int a, int b);
 void body_grid_after(const body_grid* grid, int body, body_meet_fn* meet, const void* owner, body_list* out);
 
-// Whether a body at most a cell from p along each axis holds it.
+// A body at most a cell from p along each axis that holds it, or -1.
 typedef bool body_hold_fn(const void* owner, int body, ty_vec3 p);
-bool body_grid_any(const body_grid* grid, ty_vec3 p, body_hold_fn* hold, const void* owner);
+int body_grid_find(const body_grid* grid, ty_vec3 p, body_hold_fn* hold, const void* owner);
 
 // pairs: [count] structs of stride bytes that begin with the numbers of two bodies, the second below 0 for a wall.
 // Greedy, in the pairs' order: the lowest colour that neither body has; walls are the colour after the last.

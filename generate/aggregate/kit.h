@@ -20,8 +20,10 @@ typedef struct kit
     ty_rng rng;
     int count; // of grains, once filled
     int lost, replaced;
-    int removed;           // by the thesis' filling
-    ty_pile_metrics start; // of the filling, before it settles
+    int removed;                 // by the thesis' filling
+    ty_pile_metrics start;       // of the filling, before it settles
+    ty_pile_metrics settled;     // at rest, before it is polished
+    float drift_mean, drift_max; // of the width, while it was watched
     float start_repeat;
     bool rest;
 } kit;
@@ -32,11 +34,15 @@ ty_body kit_body(kit* k, ty_vec3 position, float steepest);
 // Elements, container, and a pile of them without a body.
 TY_CHECKED ty_status kit_pile(kit* k, ty_error* error);
 TY_CHECKED ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error);
-char* kit_metrics(const kit* k, const ty_pile_metrics* m); // JSON, owned by the caller
-ty_bridge_def kit_bridge(const ty_aggregate_recipe* r);    // the liquid between the grains, or none
+ty_bridge_def kit_bridge(const ty_aggregate_recipe* r); // the liquid between the grains, or none
 
 // film.c
 TY_CHECKED ty_status kit_film(kit* k, const ty_aggregate_sink* sink, ty_error* error);
+
+// make_metrics.c
+char* kit_metrics(const kit* k, const ty_pile_metrics* m); // JSON; the caller frees it
+// Goes on from rest for settle.watch seconds and measures how far bodies move; then all is as it was.
+void kit_watch(kit* k, const ty_body* rest);
 
 // make_fill.c
 TY_CHECKED ty_status kit_fill(kit* k, ty_error* error);

@@ -146,8 +146,12 @@ static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
                "aggregate: %d float after %d substeps, overlap %.2f %% before polishing and %.2f %% after",
                metrics->floating, metrics->substeps, (double)moving.overlap_max * 100.0,
                (double)metrics->overlap_max * 100.0);
+        k->settled = moving;
         if (metrics->floating == 0 || round == ROUNDS - 1)
+        {
+            kit_watch(k, kept);
             break;
+        }
         ty_pile_set_bodies(k->pile, kept);
         if (ty_container_is_open(k->container))
             floating_replace(k, held);
@@ -184,25 +188,6 @@ static void attributes_write(const kit* k, const uint32_t* owners, ty_aggregate*
         tint[i] = tint[owners[i]];
         depth[i] = depth[owners[i]];
     }
-}
-
-char* kit_metrics(const kit* k, const ty_pile_metrics* m)
-{
-    static const char* const starts[] = {"inflate", "thesis", "lattice"};
-    float repeat = ty_pile_repeat(ty_pile_bodies(k->pile), ty_pile_count(k->pile), k->mix.width);
-    return ty_string_format("{\"count\": %d, \"phi\": %.4f, \"contacts\": %.3f, \"floating\": %d, "
-                            "\"overlap_max_percent\": %.4f, \"overlap_mean_percent\": %.5f, \"speed_rms_mm_s\": %.4f, "
-                            "\"speed_max_mm_s\": %.4f, \"rest\": %s, \"substeps\": %d, \"lost\": %d, "
-                            "\"replaced\": %d, \"level_mm\": %.3f, \"crown_mm\": %.3f, \"start\": \"%s\", "
-                            "\"removed\": %d, \"start_overlap_max_percent\": %.4f, "
-                            "\"start_overlap_mean_percent\": %.5f, \"start_repeat_percent\": %.3f, "
-                            "\"repeat_percent\": %.3f}",
-                            m->count, (double)m->phi, (double)m->contacts, m->floating, (double)m->overlap_max * 100.0,
-                            (double)m->overlap_mean * 100.0, (double)m->speed_rms * 1e3, (double)m->speed_max * 1e3,
-                            k->rest ? "true" : "false", m->substeps, k->lost, k->replaced, (double)k->top.level * 1e3,
-                            (double)k->top.crown * 1e3, starts[k->recipe->fill.start], k->removed,
-                            (double)k->start.overlap_max * 100.0, (double)k->start.overlap_mean * 100.0,
-                            (double)k->start_repeat * 100.0, (double)repeat * 100.0);
 }
 
 ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error)
@@ -310,8 +295,8 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
     ty_log(TY_LOG_INFO,
            "aggregate: %d grains, prepared %.1f s, filled %.1f s, settled and polished %.1f s; %d lost, %d replaced",
            metrics.count, prepared - start, filled - prepared, ty_time_now() - filled, k->lost, k->replaced);
-    ty_log(TY_LOG_INFO, "aggregate: phi %.3f, %.1f neighbours, %d float, overlap %.3f %% of the width at most",
-           (double)metrics.phi, (double)metrics.contacts, metrics.floating, (double)metrics.overlap_max * 100.0);
+    ty_log(TY_LOG_INFO, "aggregate: phi %.3f, %.1f contacts, %d float, overlap %.3f %% of the width at most",
+           (double)metrics.phi, (double)k->settled.contacts, metrics.floating, (double)metrics.overlap_max * 100.0);
     bool slippery = k->recipe->settle.friction < 0.05f; // such piles creep for long: they end by time
     if ((!k->rest && !slippery) || metrics.floating > 0)
         return ty_error_set(error, TY_NOT_AT_REST, "the pile is not at rest: %.3g mm/s, %d grains float",

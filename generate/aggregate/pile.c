@@ -32,8 +32,9 @@ void ty_pile_destroy(ty_pile* pile)
 {
     if (!pile)
         return;
-    void* arrays[] = {pile->bodies,  pile->poses,     pile->motions,     pile->balls,    pile->ball_first, pile->pairs,
-                      pile->touches, pile->old_pairs, pile->old_touches, pile->contacts, pile->order,      pile->walls};
+    void* arrays[] = {pile->bodies, pile->poses,   pile->motions,   pile->balls,       pile->ball_first,
+                      pile->pairs,  pile->touches, pile->old_pairs, pile->old_touches, pile->contacts,
+                      pile->order,  pile->walls,   pile->solid};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         ty_free(arrays[i]);
     ty_free(pile);

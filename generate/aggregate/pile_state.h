@@ -73,6 +73,7 @@ struct ty_pile
 {
     ty_pile_def def;
     float mean_volume, mean_width, max_radius;
+    float* solid; // [grains], volume of the mesh over that of the union of its balls; NULL until it is asked for
     float margin; // m, for candidates of a settling pile: at least as far as a bridge reaches
     bool cohesive;
     float growth;           // common size factor, below 1 during a fill
@@ -159,3 +160,6 @@ void pile_refresh_all(ty_pile* pile);
 
 // metrics.c
 void pile_speeds(const ty_pile* pile, float* rms, float* largest); // of the balls, m/s
+
+// packing.c
+void pile_packing(ty_pile* pile, ty_pile_metrics* out); // phi and phi_balls

@@ -16,7 +16,13 @@ ty_aggregate_recipe ty_aggregate_recipe_default(void)
                  .sprinkle = 0.06f,
                  .sweeps = 400,
                  .thesis = {.refine = 1.0f, .offset = 0.0f, .remove = 1.0f}},
-        .settle = {pile.friction, pile.rolling, 3.0f, pile.rate, 200, 0.0f, 0.0f, TY_SOLVER_IMPULSE, 3e5f},
+        .settle = {.friction = pile.friction,
+                   .rolling = pile.rolling,
+                   .max_seconds = 3.0f,
+                   .rate = pile.rate,
+                   .polish = 200,
+                   .solver = TY_SOLVER_IMPULSE,
+                   .modulus = 3e5f},
         .press = {.strain = 0.0f, .seconds = 0.6f},
         .moisture = {.variation = 0.8f, .drying = 0.4f, .wet_basis = 0.62f},
         .animate = {.frames = 0, .fps = 24.0f},
@@ -204,7 +210,7 @@ static ty_status element(const void* def, int number, ty_mesh** out, ty_error* e
 
 const ty_generator ty_aggregate_generator = {
     .kind = "aggregate",
-    .build_id = "aggregate 3",
+    .build_id = "aggregate 4",
     .product = TY_PRODUCT_AGGREGATE,
     .params = &recipe_table,
     .make = make,

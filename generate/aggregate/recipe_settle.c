@@ -16,6 +16,8 @@ static const ty_param settle_rows[] = {
     FIELD("max_seconds", TY_PARAM_FLOAT, "s", 0.1, 60, max_seconds, "simulated time after which a pile is not at rest"),
     FIELD("rate", TY_PARAM_FLOAT, "1/s", 1000, 20000, rate, "substeps per second; deep piles want more"),
     FIELD("polish", TY_PARAM_INT, "", 0, 5000, polish, "sweeps that take out what overlap is left"),
+    FIELD("watch", TY_PARAM_FLOAT, "s", 0, 60, watch,
+          "simulated time that it goes on at rest, to tell how far the elements move; the result is the same"),
     FIELD("cohesion", TY_PARAM_FLOAT, "N/m", -1, 1, cohesion,
           "surface tension of the liquid between grains; below 0: water, as much as moisture.wet_basis gives"),
     FIELD("adhesion", TY_PARAM_FLOAT, "J/m^2", 0, 10, adhesion, "work of adhesion of sticky grains, starch about 0.1"),

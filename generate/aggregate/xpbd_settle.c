@@ -86,6 +86,7 @@ ty_status kit_soften(kit* k, ty_pile_metrics* metrics, ty_error* error)
     frames_take(k, x);
     ty_pile_measure(k->pile, metrics, NULL);
     ty_xpbd_speeds(x, &metrics->speed_rms, &metrics->speed_max);
+    k->settled = *metrics;
     k->rest = metrics->speed_rms < 0.3e-3f && metrics->speed_max < 1.7e-3f; // as of a rigid pile
     ty_xpbd_destroy(x);
     if (ty_cancel_requested())

@@ -327,7 +327,7 @@ static void test_what_floats(void** state)
     ty_pile_measure(pile, &metrics, held);
     assert_true(held[0] && !held[1] && !held[2] && !held[3]);
     assert_int_equal(metrics.floating, 3);
-    assert_true(metrics.contacts == 0.5f);
+    assert_true(metrics.neighbours == 0.5f);
     ty_pile_destroy(pile);
     ty_container_destroy(box);
 }

@@ -68,6 +68,7 @@ typedef struct ty_settle_def
     float max_seconds; // simulated, 0.1..60
     float rate;        // substeps per second, 1000..20000
     int polish;        // sweeps, 0..5000
+    float watch;       // s that a pile at rest goes on, to measure how far it moves, 0..60
     float cohesion;    // N/m, tension of the liquid between grains; < 0: water, as much as moisture.wet_basis gives
     float adhesion;    // J/m^2, work of adhesion of sticky surfaces, 0..10
     int solver;        // ty_solver

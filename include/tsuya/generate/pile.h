@@ -114,13 +114,16 @@ typedef struct ty_pile_metrics
 {
     int count;
     int floating;       // neither at a wall nor held at three points by two neighbours, gaps up to 2 % of the width
-    float contacts;     // neighbours per grain, mean
+    float contacts;     // neighbours that touch, gaps up to 1 um, per grain, mean
+    float loaded;       // those that press on it by over a hundredth of a mean grain's weight, per grain, mean
+    float neighbours;   // those with gaps up to 2 % of the width, per grain, mean
     float overlap_max;  // of the mean width
     float overlap_mean; // over the pairs in contact
     float speed_rms;    // m/s, of the balls
     float speed_max;
-    float phi;    // volume share of the grains below the surface, 0 where the pile is too small to tell
-    int substeps; // so far
+    float phi;       // volume share of the grains' own meshes below the surface, 0 where the pile is too small to tell
+    float phi_balls; // the same of the union of their balls
+    int substeps;    // so far
 } ty_pile_metrics;
 
 // held (NULL is allowed): [count], false for floating bodies.
