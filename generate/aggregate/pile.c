@@ -34,7 +34,7 @@ void ty_pile_destroy(ty_pile* pile)
         return;
     void* arrays[] = {pile->bodies, pile->poses,   pile->motions,   pile->balls,       pile->ball_first,
                       pile->pairs,  pile->touches, pile->old_pairs, pile->old_touches, pile->contacts,
-                      pile->order,  pile->walls,   pile->solid};
+                      pile->order,  pile->walls,   pile->solid,     pile->rolls};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         ty_free(arrays[i]);
     ty_free(pile);
@@ -58,6 +58,7 @@ static void bodies_reserve(ty_pile* pile, int needed)
     pile->bodies = ty_grow(pile->bodies, old, grown, sizeof *pile->bodies);
     pile->poses = ty_grow(pile->poses, old, grown, sizeof *pile->poses);
     pile->motions = ty_grow(pile->motions, old, grown, sizeof *pile->motions);
+    pile->rolls = ty_grow(pile->rolls, old, grown, sizeof *pile->rolls);
     pile->ball_first = ty_grow(pile->ball_first, old ? old + 1 : 0, grown + 1, sizeof *pile->ball_first);
     pile->capacity = (int)grown;
 }
@@ -95,7 +96,10 @@ void ty_pile_add(ty_pile* pile, const ty_body* bodies, int count)
     pile->count += count;
     balls_lay(pile, first);
     for (int i = first; i < pile->count; i++)
+    {
+        pile->rolls[i] = ty_vec3_make(0.0f, 0.0f, 0.0f);
         body_enter(pile, i);
+    }
 }
 
 void ty_pile_set_bodies(ty_pile* pile, const ty_body* bodies)
@@ -139,6 +143,7 @@ void ty_pile_remove(ty_pile* pile, const bool* gone)
         pile->bodies[kept] = pile->bodies[i];
         pile->poses[kept] = pile->poses[i];
         pile->motions[kept] = pile->motions[i];
+        pile->rolls[kept] = pile->rolls[i];
         int first = pile->ball_first[i], balls = pile_ball_count(pile, i);
         memmove(pile_balls(pile, kept), pile->balls + first, sizeof(ty_ball) * (size_t)balls);
         pile->ball_first[kept + 1] = pile->ball_first[kept] + balls;

@@ -81,6 +81,7 @@ struct ty_pile
     ty_body* bodies;
     pose* poses;
     motion* motions;
+    ty_vec3* rolls;  // impulses of rolling resistance that are kept, in the world
     ty_ball* balls;  // world, body by body
     int* ball_first; // [count + 1], of each body in balls
     int ball_capacity;

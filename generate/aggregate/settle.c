@@ -223,8 +223,10 @@ static void bodies_accelerate(void* context, int64_t begin, int64_t end, int wor
     {
         motion* m = &pile->motions[i];
         m->load = 0.0f;
-        if (!m->asleep)
-            m->v = ty_add(m->v, step);
+        if (m->asleep)
+            continue;
+        m->v = ty_add(m->v, step);
+        m->w = ty_add(m->w, symmetric_times(m->inverse_inertia, pile->rolls[i]));
     }
 }
 
@@ -266,13 +268,17 @@ static void bodies_advance(void* context, int64_t begin, int64_t end, int worker
     }
 }
 
-// Rolling resistance: the load times a small arm, taken from the spin, never reversing it.
-static void body_roll(const ty_pile* pile, motion* m)
+// Rolling resistance: an impulse against the spin, at most the load times a small arm. It is kept, as friction is: what
+// holds a ball on a slope has to be there before it rolls, or the ball creeps.
+static void body_roll(const ty_pile* pile, motion* m, ty_vec3* kept)
 {
-    const float* s = m->inverse_inertia;
-    float lightest = ty_max(s[0], ty_max(s[1], s[2])), w = ty_length(m->w);
-    float loss = pile->def.rolling * 0.5f * pile->mean_width * m->load * lightest;
-    m->w = ty_mul(m->w, w > loss ? 1.0f - loss / w : 0.0f);
+    float limit = pile->def.rolling * 0.5f * pile->mean_width * m->load;
+    ty_vec3 wanted = ty_sub(*kept, spin_momentum(m->inverse_inertia, m->w));
+    float size = ty_length(wanted);
+    if (size > limit)
+        wanted = ty_mul(wanted, limit / size);
+    m->w = ty_add(m->w, symmetric_times(m->inverse_inertia, ty_sub(wanted, *kept)));
+    *kept = wanted;
 }
 
 static void body_wake(ty_pile* pile, int i)
@@ -299,7 +305,7 @@ static void bodies_roll(void* context, int64_t begin, int64_t end, int worker)
             body_wake(pile, (int)i);
         if (m->asleep)
             continue;
-        body_roll(pile, m);
+        body_roll(pile, m, &pile->rolls[i]);
         float speed = ty_length(m->v) + ty_length(m->w) * 0.5f * pile->mean_width;
         m->quiet = speed < SLEEP_SPEED && pile->may_sleep && !pile->walls ? (uint16_t)(m->quiet + 1) : 0;
         if ((float)m->quiet > SLEEP_TIME * pile->def.rate)

@@ -135,6 +135,38 @@ static void test_rolls_and_slips(void** state)
     assert_true(fabsf(slope_speed(a, mu) / slipped - 1.0f) < 0.01f);
 }
 
+// Moves of a ball on a slope within .2 s from .3 s on, m. Rolling resistance is an arm of def.rolling radii.
+static float slope_roll(float angle, float rolling)
+{
+    ty_container* box = floor_make();
+    ty_pile_def def = weightless(0.5f);
+    def.rolling = rolling;
+    def.gravity = ty_vec3_make(9.81f * ty_sin(angle), -9.81f * ty_cos(angle), 0.0f);
+    def.container = box;
+    ty_pile* pile = ty_pile_create(&def);
+    ty_body body = ball_at(0.0f, -0.02f + RADIUS, 0.0f);
+    ty_pile_add(pile, &body, 1);
+    steps(pile, 750);
+    float from = ty_pile_bodies(pile)->position.x;
+    steps(pile, 500);
+    float moved = ty_pile_bodies(pile)->position.x - from;
+    ty_pile_destroy(pile);
+    ty_container_destroy(box);
+    return moved;
+}
+
+// Resistance of an arm of c radii holds a ball still up to tan a = c, without creep, and beyond takes its share of
+// what turns the ball: 5/7 g (sin a - c cos a).
+static void test_rolling_resistance(void** state)
+{
+    (void)state;
+    const float c = 0.1f;
+    assert_true(fabsf(slope_roll(ty_atan2(0.98f * c, 1.0f), c)) < 1e-7f);
+    float a = 0.2f, ramp = 0.05f, from = 0.3f - 0.5f * ramp, to = 0.5f - 0.5f * ramp;
+    float moved = 0.5f * 5.0f / 7.0f * 9.81f * (ty_sin(a) - c * ty_cos(a)) * (to * to - from * from);
+    assert_true(fabsf(slope_roll(a, c) / moved - 1.0f) < 0.02f);
+}
+
 static double energy(const ty_pile* pile)
 {
     const ty_body* b = ty_pile_bodies(pile);
@@ -404,6 +436,7 @@ int main(void)
         cmocka_unit_test(test_central_impact),
         cmocka_unit_test(test_oblique_impact),
         cmocka_unit_test(test_rolls_and_slips),
+        cmocka_unit_test(test_rolling_resistance),
         cmocka_unit_test(test_energy_never_grows),
         cmocka_unit_test(test_free_rotation),
         cmocka_unit_test(test_force_curve),

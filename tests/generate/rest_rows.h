@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// Piles that must come to rest, and what at rest means: bounds of speeds, drift, overlaps, contacts and packing.
+#pragma once
+#include "base/cmocka_all.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <tsuya/generate/aggregate_recipe.h>
+#include <tsuya/geometry/mesh_file.h>
+#include <unistd.h>
+
+typedef struct rest_bounds
+{
+    double phi[2];      // of the balls: they are what packs
+    double contacts[2]; // that press
+} rest_bounds;
+
+static double rest_metric(const ty_aggregate* a, const char* name)
+{
+    char key[64];
+    snprintf(key, sizeof key, "\"%s\": ", name);
+    const char* at = strstr(a->metrics, key);
+    if (!at)
+        fail_msg("no %s in %s", name, a->metrics);
+    return atof(at + strlen(key));
+}
+
+static void rest_between(const char* what, double value, const double bounds[2])
+{
+    if (!(value >= bounds[0] && value <= bounds[1]))
+        fail_msg("%s: %g is not in %g..%g", what, value, bounds[0], bounds[1]);
+}
+
+static void rest_below(const ty_aggregate* a, const char* name, double most)
+{
+    rest_between(name, rest_metric(a, name), (const double[2]){0.0, most});
+}
+
+// Speeds in mm/s; overlaps and the drift over a further second in % of the width.
+static void assert_at_rest(const char* name, const ty_aggregate* a, const rest_bounds* bounds)
+{
+    print_message(
+        "%-12s %5.0f: v_rms %.4f mm/s, drift %.4f / %.3f %%, overlap %.3f / %.4f %%, polished %.4f / %.5f %%, "
+        "phi %.3f (balls %.3f), contacts %.2f, %.0f substeps\n",
+        name, rest_metric(a, "count"), rest_metric(a, "speed_rms_mm_s"), rest_metric(a, "drift_mean_percent"),
+        rest_metric(a, "drift_max_percent"), rest_metric(a, "settled_overlap_max_percent"),
+        rest_metric(a, "settled_overlap_mean_percent"), rest_metric(a, "overlap_max_percent"),
+        rest_metric(a, "overlap_mean_percent"), rest_metric(a, "phi"), rest_metric(a, "phi_balls"),
+        rest_metric(a, "loaded"), rest_metric(a, "substeps"));
+    assert_non_null(strstr(a->metrics, "\"rest\": true"));
+    rest_below(a, "speed_rms_mm_s", 0.3);
+    rest_below(a, "drift_mean_percent", 0.05);
+    rest_below(a, "drift_max_percent", 2.0);
+    rest_below(a, "settled_overlap_max_percent", 2.0);
+    rest_below(a, "settled_overlap_mean_percent", 0.2);
+    rest_below(a, "overlap_max_percent", 0.1);
+    rest_below(a, "overlap_mean_percent", 0.01);
+    rest_below(a, "floating", 0.0);
+    rest_between("phi_balls", rest_metric(a, "phi_balls"), bounds->phi);
+    rest_between("loaded", rest_metric(a, "loaded"), bounds->contacts);
+}
+
+static ty_aggregate* rest_made(const ty_aggregate_recipe* recipe, ty_workers* workers)
+{
+    ty_aggregate* out = NULL;
+    ty_error error = {0};
+    if (ty_aggregate_make(recipe, workers, &out, &error) != TY_OK)
+        fail_msg("%s", error.text);
+    return out;
+}
+
+// --- bowls of which a smaller one is the same in other numbers ---
+
+static void bowl_scale(ty_aggregate_recipe* r, float scale)
+{
+    r->container.shape.radius *= scale;
+    r->container.shape.height *= scale;
+    r->container.shape.foot_radius *= scale;
+    r->fill.heap *= scale;
+}
+
+static ty_aggregate_recipe rice_bowl(int count)
+{
+    ty_aggregate_recipe r = ty_aggregate_recipe_default();
+    r.container.shape.radius = 0.0385f;
+    r.container.shape.height = 0.0385f;
+    r.container.shape.thickness = 0.0022f;
+    r.container.shape.foot_radius = 0.0165f;
+    r.container.shape.foot_height = 0.005f;
+    r.container.shape.curve = 3.0f;
+    r.fill.heap = 0.014f;
+    r.fill.count = count;
+    bowl_scale(&r, ty_pow((float)count / (count < 1000 ? 1300.0f : 2000.0f), 1.0f / 3.0f));
+    r.settle.watch = 1.0f;
+    return r;
+}
+
+static ty_aggregate_recipe roe_bowl(int count)
+{
+    ty_aggregate_recipe r = ty_aggregate_recipe_default();
+    r.element.kind = TY_ELEMENT_ROE;
+    r.element.variation = 0.05f;
+    r.container.shape.radius = 0.0205f;
+    r.container.shape.height = 0.0125f;
+    r.container.shape.thickness = 0.0016f;
+    r.container.shape.foot_radius = 0.008f;
+    r.container.shape.foot_height = 0.0006f;
+    r.container.shape.curve = 2.6f;
+    r.fill.heap = 0.012f;
+    r.fill.count = count;
+    r.fill.density = 0.62f;
+    r.fill.sprinkle = 0.4f;
+    bowl_scale(&r, ty_pow((float)count / 60.0f, 1.0f / 3.0f));
+    r.settle.friction = 1.0f;
+    r.settle.rolling = 0.1f;
+    r.settle.watch = 1.0f;
+    return r;
+}
