@@ -98,7 +98,7 @@ static void the_bound_is_found(void** state)
     r.container.kind = TY_CONTAINER_SPHERE;
     r.container.shape.radius = 0.012f;
     r.fill.start = TY_FILL_LATTICE;
-    r.fill.count = 100;
+    r.fill.count = 80;
     assert_refused(&r, "a lattice has", "");
 }
 
