@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The front door. `make demo` and `make test` install what is missing (they say so first); `make build` installs nothing.
-.PHONY: build demo test test-long setup mutations fuzz bench bench-trace bench-textures bench-shading bench-cycles format check clean
+# `make bunny` fetches the mesh of scenes/rice_bunny.
+.PHONY: build demo test bunny test-long setup mutations fuzz bench bench-trace bench-textures bench-shading bench-cycles format check clean
 
 build:
 	@.ci/build release
@@ -15,6 +16,7 @@ test: setup
 	@.ci/build release
 	@.ci/test release
 
+# `make bunny` fetches the mesh of scenes/rice_bunny.
 test-long: setup
 	@.ci/build release
 	@.ci/test release -L long
