@@ -16,7 +16,9 @@ test: setup
 	@.ci/build release
 	@.ci/test release
 
-# `make bunny` fetches the mesh of scenes/rice_bunny.
+bunny:
+	@scenes/rice_bunny/fetch
+
 test-long: setup
 	@.ci/build release
 	@.ci/test release -L long
