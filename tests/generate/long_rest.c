@@ -24,13 +24,16 @@ static int group_teardown(void** state)
     return 0;
 }
 
-static void three_seeds(const char* name, ty_aggregate_recipe* r, const rest_bounds* bounds)
+// slot and width: of what is rendered, for its overlaps.
+static void three_seeds(const char* name, ty_aggregate_recipe* r, const rest_bounds* bounds, const char* slot,
+                        float width)
 {
     for (int seed = 1; seed <= SEEDS; seed++)
     {
         r->seed.value = (uint64_t)seed;
         ty_aggregate* a = rest_made(r, workers);
         assert_at_rest(name, a, bounds);
+        assert_meshes_apart(a, slot, width, slot ? 3.0 : 7.0, 1.5);
         ty_aggregate_destroy(a);
     }
 }
@@ -94,7 +97,7 @@ static void mould_rests(const char* name, reach_fn* reach, int count, double vol
     r.container.mesh = path;
     r.fill.count = count;
     r.settle.watch = 1.0f;
-    three_seeds(name, &r, &bounds);
+    three_seeds(name, &r, &bounds, NULL, 3e-3f);
     unlink(path);
 }
 
@@ -115,7 +118,7 @@ static void test_rice_bowl(void** state)
     (void)state;
     const rest_bounds bounds = {{0.58, 0.68}, {4.0, 7.0}};
     ty_aggregate_recipe r = rice_bowl(2000);
-    three_seeds("rice bowl", &r, &bounds);
+    three_seeds("rice bowl", &r, &bounds, NULL, 3e-3f);
 }
 
 static void test_roe_bowl(void** state)
@@ -123,7 +126,7 @@ static void test_roe_bowl(void** state)
     (void)state;
     const rest_bounds bounds = {{0.54, 0.65}, {3.0, 6.5}};
     ty_aggregate_recipe r = roe_bowl(310);
-    three_seeds("roe bowl", &r, &bounds);
+    three_seeds("roe bowl", &r, &bounds, "membrane", 6.2e-3f);
 }
 
 int main(void)

@@ -2,6 +2,7 @@
 // Piles that must come to rest, and what at rest means: bounds of speeds, drift, overlaps, contacts and packing.
 #pragma once
 #include "base/cmocka_all.h"
+#include "mesh_overlap.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,9 +32,14 @@ static void rest_between(const char* what, double value, const double bounds[2])
         fail_msg("%s: %g is not in %g..%g", what, value, bounds[0], bounds[1]);
 }
 
+static void rest_below_of(const char* what, double value, double most)
+{
+    rest_between(what, value, (const double[2]){0.0, most});
+}
+
 static void rest_below(const ty_aggregate* a, const char* name, double most)
 {
-    rest_between(name, rest_metric(a, name), (const double[2]){0.0, most});
+    rest_below_of(name, rest_metric(a, name), most);
 }
 
 // Speeds in mm/s; overlaps and the drift over a further second in % of the width.
@@ -58,6 +64,16 @@ static void assert_at_rest(const char* name, const ty_aggregate* a, const rest_b
     rest_below(a, "floating", 0.0);
     rest_between("phi_balls", rest_metric(a, "phi_balls"), bounds->phi);
     rest_between("loaded", rest_metric(a, "loaded"), bounds->contacts);
+}
+
+// Of the meshes as they are rendered, in % of the width; slot as of mesh_overlap_measure.
+static void assert_meshes_apart(const ty_aggregate* a, const char* slot, float width, double most, double mean)
+{
+    mesh_overlap o = mesh_overlap_measure(a, slot, width);
+    print_message("%-12s meshes overlap by %.3f %% at most, %.4f %% in the mean of %.2f pairs a body\n", "",
+                  (double)o.most * 100.0, (double)o.mean * 100.0, (double)o.pairs);
+    rest_below_of("meshes, most", (double)o.most * 100.0, most);
+    rest_below_of("meshes, mean", (double)o.mean * 100.0, mean);
 }
 
 static ty_aggregate* rest_made(const ty_aggregate_recipe* recipe, ty_workers* workers)
