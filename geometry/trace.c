@@ -155,12 +155,13 @@ static RTCGeometry create_instance_geometry(const ty_world* world, const ty_trac
     if (!geometry)
         return NULL;
     const ty_trace_prototype* prototype = &world->prototypes[ty_trace_prototype_of(object, instance)];
-    ty_affine inner = ty_trace_inner_map(object, instance);
+    bool drifts = object->drifts && object->drifts[instance];
+    int count = drifts ? ty_trace_drift_steps(object, instance) : object->step_count;
     rtcSetGeometryInstancedScene(geometry, prototype->scene);
-    rtcSetGeometryTimeStepCount(geometry, (unsigned)object->step_count);
-    for (int i = 0; i < object->step_count; i++)
+    rtcSetGeometryTimeStepCount(geometry, (unsigned)count);
+    for (int i = 0; i < count; i++)
     {
-        ty_affine map = object->aggregate ? ty_affine_multiply(&object->steps[i], &inner) : object->steps[i];
+        ty_affine map = ty_trace_made_map(object, instance, count > 1 ? (float)i / (float)(count - 1) : 0.0f);
         rtcSetGeometryTransform(geometry, (unsigned)i, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &map);
     }
     return geometry;
@@ -257,13 +258,15 @@ static ty_status attach_fast(ty_world* world, ty_error* error)
     {
         ty_trace_object* object = &world->objects[i];
         bool moves = object->step_count > 1;
-        if (moves && object->aggregate)
+        if (object->drifts)
+            attach(world, object, ty_trace_create_drifting_geometry(world, object), i);
+        else if (moves && object->aggregate)
             status = ty_trace_wide_create(world, &i, 1, &object->wide, error);
-        if (moves)
+        if (moves && !object->drifts)
             attach(world, object, ty_trace_create_moving_geometry(world, object), i);
         else if (!object->aggregate && box_area(object) > small)
             attach(world, object, create_plain_geometry(world, object, &mesh_triangles), i);
-        else
+        else if (!moves)
             wide[count++] = i;
     }
     if (status == TY_OK)
@@ -305,6 +308,17 @@ static void find_horizons(ty_world* world)
     ty_free(wanted);
 }
 
+static ty_bounds object_bounds(const ty_trace_object* object)
+{
+    ty_bounds box = ty_bounds_empty();
+    for (int k = 0; k < object->step_count; k++)
+        box = ty_bounds_union(box, ty_trace_step_bounds(object, k));
+    for (uint32_t i = 0; i < object->drift_count; i++)
+        for (int k = 0; k < object->drift_steps; k++)
+            box = ty_bounds_union(box, ty_trace_drift_bounds(object, object->drifting[i], k));
+    return box;
+}
+
 ty_status ty_world_commit(ty_world* world, ty_error* error)
 {
     TY_ASSERT(!world->scene);
@@ -324,8 +338,7 @@ ty_status ty_world_commit(ty_world* world, ty_error* error)
     }
     rtcCommitScene(world->scene);
     for (uint32_t i = 0; i < world->object_count; i++)
-        for (int k = 0; k < world->objects[i].step_count; k++)
-            world->bounds = ty_bounds_union(world->bounds, ty_trace_step_bounds(&world->objects[i], k));
+        world->bounds = ty_bounds_union(world->bounds, object_bounds(&world->objects[i]));
     return status == TY_OK ? ty_trace_take_error(world, "top level", error) : status;
 }
 
@@ -336,7 +349,9 @@ ty_bounds ty_world_bounds(const ty_world* world)
 
 static uint64_t object_memory(const ty_trace_object* object)
 {
-    return sizeof *object + (uint64_t)object->step_count * sizeof(ty_affine) + ty_trace_wide_memory(object->wide);
+    uint64_t drift = object->drifts ? object->count * sizeof(bool) + object->drift_count * sizeof(uint32_t) : 0;
+    return sizeof *object + (uint64_t)object->step_count * sizeof(ty_affine) + ty_trace_wide_memory(object->wide) +
+           drift;
 }
 
 uint64_t ty_world_memory(const ty_world* world)

@@ -7,6 +7,8 @@
 static void free_object(ty_trace_object* object)
 {
     ty_trace_wide_destroy(object->wide);
+    ty_free(object->drifts);
+    ty_free(object->drifting);
     ty_free(object->prototypes);
     ty_free(object->steps);
 }
@@ -47,8 +49,12 @@ static ty_status append(ty_world* world, ty_trace_object* added, ty_motion motio
     ty_status status = ty_trace_refine_motion(motion, &added->steps, &added->step_count, error);
     if (status != TY_OK)
         return status;
+    status = ty_trace_find_drift(added, motion, error);
+    if (status != TY_OK)
+        return status;
     ty_affine identity = ty_affine_identity();
-    added->is_identity = added->step_count == 1 && memcmp(&added->steps[0], &identity, sizeof identity) == 0;
+    added->is_identity =
+        !added->drifts && added->step_count == 1 && memcmp(&added->steps[0], &identity, sizeof identity) == 0;
     added->index = world->object_count;
     added->first = world->instance_count;
     added->closed_subsurface = flags.closed_subsurface;
@@ -140,7 +146,12 @@ const ty_mesh* ty_world_mesh(const ty_world* world, uint32_t object, uint32_t in
 ty_affine ty_trace_made_map(const ty_trace_object* object, uint32_t instance, float time)
 {
     ty_affine map = ty_trace_map_at(object->steps, object->step_count, time);
-    return object->aggregate ? ty_affine_multiply(&map, &object->aggregate->transforms[instance]) : map;
+    if (!object->aggregate)
+        return map;
+    if (!object->drifts || !object->drifts[instance])
+        return ty_affine_multiply(&map, &object->aggregate->transforms[instance]);
+    ty_affine inner = ty_trace_drifted(object, instance, time);
+    return ty_affine_multiply(&map, &inner);
 }
 
 ty_affine ty_world_to_world(const ty_world* world, uint32_t object, uint32_t instance, float time)
@@ -157,5 +168,5 @@ ty_affine ty_world_to_local(const ty_world* world, uint32_t object, uint32_t ins
 
 bool ty_world_is_moving(const ty_world* world, uint32_t object)
 {
-    return world->objects[object].step_count > 1;
+    return world->objects[object].step_count > 1 || world->objects[object].drifts;
 }

@@ -225,7 +225,8 @@ bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_
     const ty_trace_object* o = &world->objects[object];
     uint32_t prototype = ty_trace_prototype_of(o, instance);
     ty_affine map;
-    if (o->step_count > 1)
+    bool drifts = o->drifts && o->drifts[instance];
+    if (o->step_count > 1 && !drifts)
     {
         ty_affine outer = ty_trace_map_at(o->steps, o->step_count, time);
         if (!ty_affine_invert(&outer, &map))
@@ -234,7 +235,7 @@ bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_
         direction = ty_map_vector(&map, direction);
     }
     // Where the wide level holds the instance, by way of the sphere as there: the same bits.
-    if (world->path == TY_TRACE_FAST && o->aggregate)
+    if (world->path == TY_TRACE_FAST && o->aggregate && !drifts)
     {
         const ty_affine* back = &world->prototypes[prototype].from_sphere;
         if (!ty_trace_sphere_map(world, o, instance, &map))
@@ -243,7 +244,7 @@ bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_
         origin = ty_map_point(back, origin);
         direction = ty_map_vector(back, direction);
     }
-    else if (o->step_count == 1)
+    else if (o->step_count == 1 || drifts)
     {
         map = ty_world_to_local(world, object, instance, time);
         origin = ty_map_point(&map, origin);

@@ -406,12 +406,15 @@ static void measure(builder* b, const ty_trace_object* object, uint32_t* next)
     fit_prototypes(b->world, object);
     b->wide->common_mask &= object->mask;
     b->wide->has_subsurface = b->wide->has_subsurface || object->closed_subsurface;
-    for (uint32_t i = 0; i < object->count; i++, (*next)++)
+    for (uint32_t i = 0; i < object->count; i++)
     {
+        if (object->drifts && object->drifts[i])
+            continue;
         ty_affine placed = ty_trace_placed(object, i);
         b->number[*next] = object->first + i;
         b->box[*next] = instance_bounds(&b->world->prototypes[ty_trace_prototype_of(object, i)], &placed);
         b->order[*next] = *next;
+        (*next)++;
     }
 }
 
@@ -466,7 +469,7 @@ ty_status ty_trace_wide_create(ty_world* world, const uint32_t* objects, uint32_
     *out = NULL;
     uint64_t count = 0;
     for (uint32_t i = 0; i < object_count; i++)
-        count += world->objects[objects[i]].count;
+        count += world->objects[objects[i]].count - world->objects[objects[i]].drift_count;
     if (count == 0)
         return TY_OK;
     builder b = {.world = world, .wide = TY_ALLOC(ty_trace_wide, 1)};

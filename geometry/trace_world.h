@@ -29,7 +29,12 @@ typedef struct ty_trace_object
     uint32_t* prototypes;          // the world's index of each of the aggregate's; owned; plain: one
     ty_affine* steps;              // owned
     int step_count;                // 1 = at rest
-    bool is_identity;              // at rest where the aggregate's transforms put it
+    bool is_identity;              // at rest where the aggregate's transforms put it, with all of its instances
+    float open, close;             // as ty_motion's
+    bool* drifts;                  // [count] the instance moves by itself; owned; NULL = none does
+    uint32_t* drifting;            // [drift_count] those that do; owned
+    uint32_t drift_count;
+    int drift_steps; // between which their boxes move linearly
     bool closed_subsurface;
     uint32_t mask;
     ty_trace_wide* wide; // a moving aggregate's instances in its own space; owned
@@ -138,6 +143,18 @@ ty_vec2 ty_trace_closest_on_triangle(ty_vec3 p, ty_vec3 a, ty_vec3 b, ty_vec3 c)
 RTCGeometry ty_trace_create_moving_geometry(const ty_world* world, ty_trace_object* object);
 // Box of the object at a step.
 ty_bounds ty_trace_step_bounds(const ty_trace_object* object, int step);
+
+// --- trace_drift.c ---
+// Which instances of an aggregate move by their own velocities while the shutter is open. Paths that leave the finite
+// are refused.
+TY_CHECKED ty_status ty_trace_find_drift(ty_trace_object* object, ty_motion motion, ty_error* error);
+// One that does, within its object at a time.
+ty_affine ty_trace_drifted(const ty_trace_object* object, uint32_t instance, float time);
+// Steps as fine as an instance's own turn and the object's motion need to be linear between.
+int ty_trace_drift_steps(const ty_trace_object* object, uint32_t instance);
+ty_bounds ty_trace_drift_bounds(const ty_trace_object* object, uint32_t instance, int step);
+// They are a user geometry of one primitive each. NULL when Embree refuses.
+RTCGeometry ty_trace_create_drifting_geometry(const ty_world* world, ty_trace_object* object);
 
 // --- trace_query.c ---
 // Rejects hits that the ray of a ty_trace_context passes through.

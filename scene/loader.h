@@ -40,7 +40,8 @@ typedef struct ty_asset
     const char* path;
     ty_shape_def shape;
     ty_recipe recipe;
-    int prototype; // AGGREGATE: asset index or -1
+    int prototype;        // AGGREGATE: asset index or -1
+    float velocity_scale; // AGGREGATE
     ty_texture_asset_def texture_def;
     ty_frames_asset_def frames_def; // FRAMES, and recipes of frames
     bool used;
@@ -154,6 +155,9 @@ typedef struct ty_loader
     ty_seed seed;        // as written in `render`
     bool checks_keys;    // tables are read for their mistakes alone: a material may take 30 ms to make
     bool world_changed;  // objects stand elsewhere than in the world
+    bool poses_move;     // camera or objects do, while the shutter is open
+    bool instances_move; // those of aggregates do by their own velocities, as the world has them
+    float shutter[2];    // s, when it opens and closes, from the frame's moment
     int focus_object;    // of the camera, -1 = none
     int camera_capacity; // of the scene's camera_steps
 } ty_loader;

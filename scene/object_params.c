@@ -36,7 +36,8 @@ static void frames_default(void* def)
 
 static void aggregate_default(void* def)
 {
-    *(ty_aggregate_asset_def*)def = (ty_aggregate_asset_def){.sequence = {.fps = 24.0f, .last_frame = -1}};
+    *(ty_aggregate_asset_def*)def =
+        (ty_aggregate_asset_def){.velocity_scale = 1.0f, .sequence = {.fps = 24.0f, .last_frame = -1}};
 }
 
 static const ty_param visible_rows[] = {
@@ -151,6 +152,10 @@ static const ty_param aggregate_rows[] = {
      true},
     {"prototype", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_aggregate_asset_def, prototype),
      "for .ply points: the mesh or shape asset that stands at each", false},
+    {"velocity_scale", TY_PARAM_FLOAT, "", -1000, 1000, NULL, NULL, offsetof(ty_aggregate_asset_def, velocity_scale),
+     "of the instances' own velocities and spins, which blur them while the shutter is open: 0.5 for a film shown at "
+     "half its speed, 0 = no blur",
+     false},
     SEQUENCE_ROWS(ty_aggregate_asset_def),
 };
 

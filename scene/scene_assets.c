@@ -100,10 +100,12 @@ static bool read_instances(ty_loader* loader, ty_node* node, ty_asset* asset)
     if (!ty_params_read(&loader->reader, node, ty_aggregate_asset_params(), &def, is_sequence ? skip : NULL))
         return false;
     for (int i = 0; !is_sequence && i < node->count; ++i)
-        if (strcmp(node->keys[i].text, "aggregate") != 0 && strcmp(node->keys[i].text, "prototype") != 0)
+        if (strcmp(node->keys[i].text, "aggregate") != 0 && strcmp(node->keys[i].text, "prototype") != 0 &&
+            strcmp(node->keys[i].text, "velocity_scale") != 0)
             ty_report(loader->errors, node->keys[i].place, TY_BAD_INPUT,
                       "'%s' belongs to sequences: aggregate: name.####.glb", node->keys[i].text);
     asset->path = def.aggregate;
+    asset->velocity_scale = def.velocity_scale;
     if (is_sequence)
         ty_aggregate_sequence_read(loader, asset, &def, value);
     if (asset->aggregate_sequence || !is_sequence)

@@ -146,14 +146,15 @@ static void settle(ty_loader* loader, int count)
     for (int i = 1; i < count; ++i)
         if (!same_camera(&scene->camera_steps[i], &scene->camera_steps[0]))
             scene->camera_step_count = count;
-    scene->moves = scene->camera_step_count > 1;
+    loader->poses_move = scene->camera_step_count > 1;
     for (int i = 0; i < loader->entry_count; ++i)
     {
         if (!may_move(loader, i))
             continue;
         settle_object(loader, &loader->objects[i], count);
-        scene->moves |= loader->objects[i].step_count > 1;
+        loader->poses_move |= loader->objects[i].step_count > 1;
     }
+    scene->moves = loader->poses_move || loader->instances_move;
 }
 
 static void pose(ty_loader* loader, ty_moment moment)
@@ -171,12 +172,25 @@ static void keep_pose(ty_loader* loader, int step)
             loader->objects[i].steps[step] = loader->objects[i].transform;
 }
 
+// Instances go by their velocities for as long as it is open: another time makes the world another.
+static void settle_shutter(ty_loader* loader, const ty_camera_def* camera)
+{
+    for (int i = 0; i < 2; ++i)
+    {
+        float seconds = (float)(step_offset(camera, i, 2) / (double)loader->scene->timeline.fps);
+        for (int k = 0; seconds != loader->shutter[i] && k < loader->asset_count; ++k)
+            loader->world_changed |= loader->assets[k].aggregate && loader->assets[k].aggregate->velocities;
+        loader->shutter[i] = seconds;
+    }
+}
+
 void ty_pose_scene(ty_loader* loader)
 {
     ty_scene* scene = loader->scene;
     if (has_view_keys(loader))
         pose_view(loader, (ty_moment){scene->frame, 0.0}); // the shutter may be keyed: not as the last frame left it
     ty_camera_def still = scene->camera;
+    settle_shutter(loader, &still);
     int count = still.shutter > 0.0f && loader->timeline.entry_count > 0 ? still.motion_steps : 1;
     allocate_steps(loader, count);
     for (int step = 0; step < count; ++step)

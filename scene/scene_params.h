@@ -56,6 +56,7 @@ typedef struct ty_aggregate_asset_def
 {
     const char* aggregate; // path, the pattern of a sequence, or a recipe in place
     const char* prototype; // asset
+    float velocity_scale;
     ty_sequence_def sequence;
 } ty_aggregate_asset_def;
 

@@ -170,13 +170,13 @@ static ty_object_flags object_flags(const ty_loader* loader, const ty_scene_obje
 static ty_motion object_motion(const ty_object_entry* entry, const ty_placed_object* placed,
                                ty_affine steps[TY_MOTION_MAX_STEPS])
 {
-    ty_motion motion = entry->step_count > 0 ? (ty_motion){entry->built_steps, entry->step_count}
+    ty_motion motion = entry->step_count > 0 ? (ty_motion){.steps = entry->built_steps, .step_count = entry->step_count}
                                              : ty_motion_at_rest(&entry->transform);
     if (!placed->part)
         return motion;
     for (int i = 0; i < motion.step_count; ++i)
         steps[i] = ty_affine_multiply(&motion.steps[i], &placed->part->to_file);
-    return (ty_motion){steps, motion.step_count};
+    return (ty_motion){.steps = steps, .step_count = motion.step_count};
 }
 
 // Of those that shadow rays stop at; opacity may change from frame to frame.
@@ -195,6 +195,10 @@ static ty_status add_object(ty_loader* loader, int index, ty_error* error)
     ty_placed_object* placed = &loader->placed[index];
     ty_affine steps[TY_MOTION_MAX_STEPS];
     ty_motion motion = object_motion(&loader->objects[placed->entry], placed, steps);
+    int asset = loader->objects[placed->entry].asset;
+    float scale = asset >= 0 ? loader->assets[asset].velocity_scale : 0.0f;
+    motion.open = scale * loader->shutter[0];
+    motion.close = scale * loader->shutter[1];
     if (!placed->flags_known)
         placed->flags = object_flags(loader, &scene->objects[index], placed);
     placed->flags_known = true;
@@ -319,6 +323,10 @@ static bool fill_world(ty_loader* loader)
         return false;
     }
     loader->world_changed = false;
+    loader->instances_move = false;
+    for (int i = 0; i < scene->object_count; ++i)
+        loader->instances_move |= loader->placed[i].aggregate != NULL && ty_world_is_moving(scene->world, (uint32_t)i);
+    scene->moves = loader->poses_move || loader->instances_move;
     if (ty_world_commit(scene->world, &error) == TY_OK)
         return true;
     ty_error_list_add(loader->errors, &error);

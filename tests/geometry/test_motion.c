@@ -48,7 +48,7 @@ static void flies(void** state)
     for (int path = 0; path < 2; path++)
     {
         ty_world* world = new_world((ty_trace_path)path);
-        add(world, ball, (ty_motion){steps, 2}, TY_MASK_OPAQUE);
+        add(world, ball, (ty_motion){.steps = steps, .step_count = 2}, TY_MASK_OPAQUE);
         commit(world);
         assert_true(ty_world_is_moving(world, 0));
         for (int i = 0; i < 3; i++)
@@ -94,7 +94,7 @@ static void turns(void** state)
         ty_world* world = new_world((ty_trace_path)path);
         uint32_t object;
         ty_error error;
-        assert_int_equal(ty_world_add_aggregate(world, arm, (ty_motion){steps, 2},
+        assert_int_equal(ty_world_add_aggregate(world, arm, (ty_motion){.steps = steps, .step_count = 2},
                                                 (ty_object_flags){.mask = TY_MASK_OPAQUE}, &object, &error),
                          TY_OK);
         commit(world);
@@ -151,11 +151,11 @@ static void paths_agree(void** state)
     {
         world[path] = new_world((ty_trace_path)path);
         ty_object_flags flags = {.mask = TY_MASK_OPAQUE, .closed_subsurface = true};
-        ty_motion motion = {tumble, 3};
+        ty_motion motion = {.steps = tumble, .step_count = 3};
         assert_int_equal(
             ty_world_add_aggregate(world[path], rest, ty_motion_at_rest(&identity), flags, &object, &error), TY_OK);
         assert_int_equal(ty_world_add_aggregate(world[path], moving, motion, flags, &object, &error), TY_OK);
-        add(world[path], torus, (ty_motion){flight, 2}, TY_MASK_OPAQUE);
+        add(world[path], torus, (ty_motion){.steps = flight, .step_count = 2}, TY_MASK_OPAQUE);
         commit(world[path]);
     }
     ty_rng rng = ty_rng_make((ty_seed){22}, 0, 0);
@@ -205,7 +205,7 @@ static void refuses_bad_motion(void** state)
         steps[i] = ty_affine_identity();
     ty_object_flags flags = {.mask = TY_MASK_OPAQUE};
     assert_int_equal(ty_world_add_prototype(world, ball, &prototype, &error), TY_OK);
-    ty_motion motion = {steps, TY_MOTION_MAX_STEPS + 1};
+    ty_motion motion = {.steps = steps, .step_count = TY_MOTION_MAX_STEPS + 1};
     assert_int_equal(ty_world_add_object(world, prototype, motion, flags, &object, &error), TY_BAD_INPUT);
     steps[1].x.x = -1.0f;
     motion.step_count = 2;
@@ -241,11 +241,11 @@ static void masks_hide(void** state)
             {
                 away[0].t = away[1].t = (ty_vec3){0, 0, -3.0f * (float)i};
                 away[1].t.x = 5.0f;
-                add(world, ball, (ty_motion){away, 1 + moving}, masks[i]);
+                add(world, ball, (ty_motion){.steps = away, .step_count = 1 + moving}, masks[i]);
             }
             away[0].t = away[1].t = (ty_vec3){0, 0, 0};
             away[1].t.x = 5.0f;
-            assert_int_equal(ty_world_add_aggregate(world, one, (ty_motion){away, 1 + moving},
+            assert_int_equal(ty_world_add_aggregate(world, one, (ty_motion){.steps = away, .step_count = 1 + moving},
                                                     (ty_object_flags){.mask = masks[3]}, &object, &error),
                              TY_OK);
             commit(world);

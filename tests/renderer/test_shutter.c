@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras and motion in whole pictures, against what geometry says: coverage along a path, sizes, brightness of blurs.
 #include "whole_program.h"
+#include <tsuya/geometry/aggregate.h>
+#include <tsuya/geometry/shape.h>
 
 #define HEAD                                                                                                           \
     "tsuya: 1\n"                                                                                                       \
@@ -59,6 +61,65 @@ static void alpha_lies_along_the_path(void** state)
     ty_exr_destroy(exr);
 }
 
+static void assert_same_picture(const ty_exr* a, const ty_exr* b)
+{
+    size_t size = (size_t)ty_exr_width(a) * (size_t)ty_exr_height(a) * sizeof(float);
+    assert_int_equal(a->channel_count, b->channel_count);
+    for (int i = 0; i < a->channel_count; ++i)
+        assert_memory_equal(a->channels[i].pixels, b->channels[i].pixels, size);
+}
+
+// The same plate as the one instance of a file, which says how fast it is; NULL = the file says nothing.
+static ty_exr* render_instance(const ty_vec3* velocity, const char* shutter, const char* options)
+{
+    ty_shape_def def = ty_shape_def_default();
+    def.kind = TY_SHAPE_BOX;
+    def.size = (ty_vec3){0.125f, 1.0f, 0.005f};
+    ty_aggregate* a = ty_aggregate_create(1, 1);
+    ty_error error;
+    assert_int_equal(ty_shape_create(&def, &a->prototypes[0], &error), TY_OK);
+    if (velocity)
+    {
+        ty_aggregate_add_velocities(a)[0] = *velocity;
+        (void)ty_aggregate_add_spins(a);
+    }
+    assert_int_equal(ty_aggregate_write("plate.glb", a, &error), TY_OK);
+    ty_aggregate_destroy(a);
+    char text[4096];
+    snprintf(text, sizeof text,
+             HEAD "timeline: { fps: 24 }\nassets: { plate: { aggregate: plate.glb%s } }\n"
+                  "materials: { m: { model: surface, emission_luminance: 1, base_color: 0, specular_weight: 0 } }\n"
+                  "objects: [ { aggregate: plate, material: m } ]\n"
+                  "camera: { projection: orthographic, ortho_height: 0.125, position: [0, 0, 1], look_at: [0, 0, 0], "
+                  "shutter: %s }\nlights: [ { type: point, center: [0, 9, 0] } ]\nframe: 1\n",
+             64, 8, 256, "", options, shutter);
+    ty_exr* exr = render_text(text);
+    remove("plate.glb");
+    return exr;
+}
+
+static void instances_smear_by_their_velocities(void** state)
+{
+    (void)state;
+    ty_vec3 velocity = {12, 0, 0}, none = {0, 0, 0};
+    ty_exr* exr = render_instance(&velocity, "1", "");
+    check_coverage(exr, 0.5);
+    ty_exr_destroy(exr);
+    exr = render_instance(&velocity, "1", ", velocity_scale: 0.5");
+    check_coverage(exr, 0.25);
+    ty_exr_destroy(exr);
+    ty_exr *without = render_instance(NULL, "1", ""), *still = render_instance(&none, "1", ""),
+           *unscaled = render_instance(&velocity, "1", ", velocity_scale: 0"),
+           *closed = render_instance(&velocity, "0", "");
+    assert_same_picture(without, still);
+    assert_same_picture(without, unscaled);
+    assert_same_picture(without, closed);
+    ty_exr_destroy(without);
+    ty_exr_destroy(still);
+    ty_exr_destroy(unscaled);
+    ty_exr_destroy(closed);
+}
+
 // Both move together: nothing is blurred.
 static void what_goes_along_is_sharp(void** state)
 {
@@ -71,14 +132,6 @@ static void what_goes_along_is_sharp(void** state)
             assert_true(pixel(exr, "A", x, 4) == (x > 23 && x < 40 ? 1.0f : 0.0f));
     assert_true(fabsf(pixel(exr, "Z", 32, 4) - 0.995f) < 1e-5f);
     ty_exr_destroy(exr);
-}
-
-static void assert_same_picture(const ty_exr* a, const ty_exr* b)
-{
-    size_t size = (size_t)ty_exr_width(a) * (size_t)ty_exr_height(a) * sizeof(float);
-    assert_int_equal(a->channel_count, b->channel_count);
-    for (int i = 0; i < a->channel_count; ++i)
-        assert_memory_equal(a->channels[i].pixels, b->channels[i].pixels, size);
 }
 
 // An open shutter alone changes no bit, nor does a key that never moves.
@@ -311,15 +364,11 @@ static void pictures_tell_their_time(void** state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(alpha_lies_along_the_path),
-        cmocka_unit_test(what_goes_along_is_sharp),
-        cmocka_unit_test(stillness_costs_no_bit),
-        cmocka_unit_test(turning_follows_the_circle),
-        cmocka_unit_test(an_orthographic_ball_has_its_size),
-        cmocka_unit_test(blurs_keep_their_light),
-        cmocka_unit_test(all_directions_are_an_environment),
-        cmocka_unit_test(windows_and_loops_keep_every_bit),
-        cmocka_unit_test(pictures_tell_their_time),
+        cmocka_unit_test(alpha_lies_along_the_path),        cmocka_unit_test(instances_smear_by_their_velocities),
+        cmocka_unit_test(what_goes_along_is_sharp),         cmocka_unit_test(stillness_costs_no_bit),
+        cmocka_unit_test(turning_follows_the_circle),       cmocka_unit_test(an_orthographic_ball_has_its_size),
+        cmocka_unit_test(blurs_keep_their_light),           cmocka_unit_test(all_directions_are_an_environment),
+        cmocka_unit_test(windows_and_loops_keep_every_bit), cmocka_unit_test(pictures_tell_their_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,9 +18,10 @@ typedef struct file_def
     float radius;
     uint32_t first_id;
     const char* attribute;
+    float speed; // m/s, of the middle ball along z
 } file_def;
 
-static const file_def usual = {3, 0.25f, 100, "moisture"};
+static const file_def usual = {3, 0.25f, 100, "moisture", 0.0f};
 
 // Balls at x = 0, 2 and 4; the middle one at height y with 1 above and 0 below, as moist as it is high by a tenth.
 static void write_frame(int number, float y, file_def f)
@@ -39,6 +40,7 @@ static void write_frame(int number, float y, file_def f)
         aggregate->transforms[i].t = ty_vec3_make(2.0f * (float)i, i == 1 ? y : i == 0 ? 0.0f : 8.0f, 0.0f);
         aggregate->ids[i] = f.first_id + i;
         moisture[i] = 0.1f * y;
+        ty_aggregate_add_velocities(aggregate)[i] = ty_vec3_make(0.0f, 0.0f, i == 1 ? f.speed : 0.0f);
     }
     snprintf(name, sizeof name, "h.%04d.glb", number);
     assert_int_equal(ty_aggregate_write(fixture_path(name, path), aggregate, &error), TY_OK);
@@ -128,6 +130,42 @@ static void only_what_changes_is_rebuilt(void** state)
     assert_int_equal(fixture_scene->rebuilds.meshes, 0);
 }
 
+// What a ray down between the middle ball and where it flies to meets, and when.
+static bool flies(float z, float time)
+{
+    ty_hit hit;
+    ty_ray ray = ty_ray_make((ty_vec3){2.0f, 100.0f, z}, (ty_vec3){0, -1, 0}, 1000.0f);
+    ray.time = time;
+    return ty_world_intersect(fixture_scene->world, &ray, &hit);
+}
+
+// Half a frame before and after its moment at 24 m/s; at rest in the files before and after it. Rays have a time only
+// while something moves, and a keyed shutter takes instances along.
+static void velocities_follow_the_time(void** state)
+{
+    (void)state;
+    file_def fast = usual;
+    fast.speed = 24.0f;
+    write_frame(5, 1.0f, usual);
+    write_frame(6, 2.0f, fast);
+    write_frame(7, 4.0f, usual);
+    load(SCENE("") "camera: { shutter: { keys: { 1: 1, 2.2: 1, 2.3: 0.75, 9: 0.75 } } }\n");
+    assert_false(fixture_scene->moves);
+    assert_int_equal(ty_scene_set_frame(fixture_scene, 2, &fixture_errors), TY_OK);
+    assert_true(fixture_scene->moves);
+    assert_true(flies(-0.5f, 0.0f) && flies(0.0f, 0.5f) && flies(0.5f, 1.0f));
+    assert_false(flies(-0.5f, 0.6f) || flies(0.0f, 0.0f) || flies(0.5f, 0.4f));
+    assert_int_equal(ty_scene_set_frame(fixture_scene, 2.5, &fixture_errors), TY_OK);
+    assert_true(flies(-0.375f, 0.0f) && flies(0.375f, 1.0f) && !flies(0.64f, 1.0f));
+    assert_int_equal(ty_scene_set_frame(fixture_scene, 3, &fixture_errors), TY_OK);
+    assert_false(fixture_scene->moves);
+    shows(4.0f);
+    load(SCENE(", velocity_scale: -2") "camera: { shutter: 1 }\nframe: 2\n");
+    assert_true(fixture_scene->moves && flies(1.0f, 0.0f) && flies(-1.0f, 1.0f) && !flies(1.0f, 1.0f));
+    assert_int_equal(ty_scene_set_frame(fixture_scene, 2.25, &fixture_errors), TY_OK); // the same file
+    assert_true(fixture_scene->moves && flies(1.0f, 0.0f));
+}
+
 // A frame that was gone to is the one that is loaded by itself, and a camera that focuses on it sees that.
 static void frames_do_not_remember(void** state)
 {
@@ -167,10 +205,10 @@ static void files_of_other_instances_are_refused(void** state)
 {
     (void)state;
     write_frames();
-    is_refused((file_def){4, 0.25f, 100, "moisture"}, "has 4 instances, the others 3");
-    is_refused((file_def){3, 0.5f, 100, "moisture"}, "prototype 0 is another mesh");
-    is_refused((file_def){3, 0.25f, 101, "moisture"}, "instance 0 has another id or prototype (101, 0)");
-    is_refused((file_def){3, 0.25f, 100, "tint"}, "'moisture' is an attribute of some of the files only");
+    is_refused((file_def){4, 0.25f, 100, "moisture", 0.0f}, "has 4 instances, the others 3");
+    is_refused((file_def){3, 0.5f, 100, "moisture", 0.0f}, "prototype 0 is another mesh");
+    is_refused((file_def){3, 0.25f, 101, "moisture", 0.0f}, "instance 0 has another id or prototype (101, 0)");
+    is_refused((file_def){3, 0.25f, 100, "tint", 0.0f}, "'moisture' is an attribute of some of the files only");
 }
 
 static void wrong_sequences_are_named(void** state)
@@ -195,7 +233,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         FIXTURE_TEST(files_follow_the_time),     FIXTURE_TEST(only_what_changes_is_rebuilt),
         FIXTURE_TEST(frames_do_not_remember),    FIXTURE_TEST(files_of_other_instances_are_refused),
-        FIXTURE_TEST(wrong_sequences_are_named),
+        FIXTURE_TEST(wrong_sequences_are_named), FIXTURE_TEST(velocities_follow_the_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -93,13 +93,16 @@ typedef struct ty_motion
 {
     const ty_affine* steps;
     int step_count; // 1 .. TY_MOTION_MAX_STEPS
+    // Of an aggregate with velocities or spins: s from the moment of its transforms to time 0 and to time 1. In its own
+    // space the instances go straight on and turn about their origins. Equal: they stand where the transforms put them.
+    float open, close;
 } ty_motion;
 
 #define TY_MOTION_MAX_STEPS 33
 
 static inline ty_motion ty_motion_at_rest(const ty_affine* map)
 {
-    return (ty_motion){map, 1};
+    return (ty_motion){.steps = map, .step_count = 1};
 }
 
 // Adds a prototype; the mesh is borrowed and must outlive the world, or its removal. Equal pointers give the same
@@ -153,7 +156,7 @@ const ty_mesh* ty_world_prototype_mesh(const ty_world* world, uint32_t prototype
 // Prototype to world at a time, and back. Not stored but made: keep the result where it is needed twice.
 ty_affine ty_world_to_world(const ty_world* world, uint32_t object, uint32_t instance, float time);
 ty_affine ty_world_to_local(const ty_world* world, uint32_t object, uint32_t instance, float time);
-bool ty_world_is_moving(const ty_world* world, uint32_t object);
+bool ty_world_is_moving(const ty_world* world, uint32_t object); // or some of its instances are
 // The kernels in use, as `isa` names them: with the build, what the bits of a picture depend on.
 const char* ty_world_isa(const ty_world* world);
 ty_bounds ty_world_bounds(const ty_world* world); // over the whole shutter

@@ -233,7 +233,7 @@ typedef struct ty_scene
     ty_camera_def camera;        // of this frame, turned by the turntable
     ty_camera_def* camera_steps; // at even steps over the open shutter
     int camera_step_count;       // 1 = at rest
-    bool moves;                  // camera or objects, while the shutter is open: rays have a time
+    bool moves;                  // camera, objects or instances, while the shutter is open: rays have a time
     ty_render_def render;
     ty_timeline_def timeline;
     ty_turntable_def turntable;
