@@ -32,6 +32,8 @@ static const metric metrics[] = {
     {"substeps", "substeps of settling", ""},
     {"lost", "elements that fell out", ""},
     {"replaced", "elements placed anew", ""},
+    {"released_height_mm", "height of the topmost element as the mould was taken off", "mm"},
+    {"height_mm", "height of the topmost element now", "mm"},
     {"level_mm", "height of the filling", "mm"},
     {"crown_mm", "height of the crown above it", "mm"},
     {"start", "start of the filling", ""},

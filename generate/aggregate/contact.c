@@ -82,8 +82,8 @@ static bool capsules_meet(const ty_pile* pile, int a, int b, float margin)
 {
     const ty_ball *p = pile_balls(pile, a), *q = pile_balls(pile, b);
     const int last_p = pile_ball_count(pile, a) - 1, last_q = pile_ball_count(pile, b) - 1;
-    float reach = pile->def.grains[pile->bodies[a].grain].capsule * pile->bodies[a].scale;
-    reach += pile->def.grains[pile->bodies[b].grain].capsule * pile->bodies[b].scale;
+    float reach = pile->def.grains[pile->bodies[a].grain].capsule * pile->bodies[a].scale * pile_bent_reach(pile, a);
+    reach += pile->def.grains[pile->bodies[b].grain].capsule * pile->bodies[b].scale * pile_bent_reach(pile, b);
     reach = reach * pile->growth + margin;
     return segments_distance_sqr(p[0].center, ty_sub(p[last_p].center, p[0].center), q[0].center,
                                  ty_sub(q[last_q].center, q[0].center)) < reach * reach;
@@ -95,7 +95,8 @@ static void touches_find(const ty_pile* pile, found* f, int a, int b, float marg
     if (!capsules_meet(pile, a, b, margin))
         return;
     const ty_body* other = &pile->bodies[b];
-    float radius = pile->def.grains[other->grain].radius * other->scale * pile->growth + margin;
+    float radius = pile->def.grains[other->grain].radius * other->scale * pile->growth;
+    radius = radius * pile_bent_reach(pile, b) + margin;
     const int of_a = pile_ball_count(pile, a);
     const int of_b = pile_ball_count(pile, b);
     for (int i = 0; i < of_a; i++)
@@ -113,7 +114,8 @@ static bool spheres_meet(const void* owner, int i, int j)
 {
     const ty_pile* pile = owner;
     const ty_body *a = &pile->bodies[i], *b = &pile->bodies[j];
-    float reach = pile->def.grains[a->grain].radius * a->scale + pile->def.grains[b->grain].radius * b->scale;
+    float reach = pile->def.grains[a->grain].radius * a->scale * pile_bent_reach(pile, i);
+    reach += pile->def.grains[b->grain].radius * b->scale * pile_bent_reach(pile, j);
     reach = reach * pile->growth + 0.5f * (pile->poses[i].reach + pile->poses[j].reach);
     return ty_length_sqr(ty_sub(a->position, b->position)) <= reach * reach;
 }
@@ -322,7 +324,7 @@ bool pile_moved(const ty_pile* pile)
         const pose* at = &pile->poses[i];
         ty_quat p = b->rotation, q = at->seen_rotation;
         float turn = ty_sqr(p.x - q.x) + ty_sqr(p.y - q.y) + ty_sqr(p.z - q.z) + ty_sqr(p.w - q.w);
-        float lever = 2.1f * pile->def.grains[b->grain].radius * b->scale * pile->growth;
+        float lever = 2.1f * pile->def.grains[b->grain].radius * b->scale * pile->growth * pile_bent_reach(pile, i);
         float distance = ty_length(ty_sub(b->position, at->seen)) + lever * sqrtf(turn);
         if (distance > 0.45f * at->reach)
             return true;

@@ -1,58 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 // Containers as sampled distance fields: a half-plane table for turned shapes, a grid for meshes, planes for the box.
+#include "container_state.h"
 #include "hollow.h"
 #include <string.h>
-#include <tsuya/generate/container.h>
 #include <tsuya/geometry/mesh_file.h>
-#include <tsuya/geometry/trace.h>
 
 enum
 {
-    TURNED_NODES = 224,  // in each direction of the half-plane
-    GRID_NODES = 500000, // about, in all
-    FINE = 256,          // divisions of the shape that is sampled: its facets are not to be felt
+    FINE = 256, // divisions of the shape that is sampled: its facets are not to be felt
 };
-
-typedef struct node
-{
-    float gap;
-    ty_vec3 normal; // turned shapes: (radial, up, 0)
-} node;
-
-struct ty_container
-{
-    ty_container_def def;
-    int size[3]; // nodes; size[2] = 1 for turned shapes
-    ty_vec3 origin;
-    float step;
-    node* nodes;
-    bool* hollow; // [nodes] of a vessel from a mesh
-    ty_bounds interior, outside;
-    float widest;
-};
-
-static bool is_vessel(const ty_container* c)
-{
-    return c->def.kind == TY_CONTAINER_MESH && c->def.role == TY_CONTAINER_VESSEL;
-}
 
 ty_container_def ty_container_def_default(void)
 {
     ty_container_def def = {.kind = TY_CONTAINER_BOWL, .mesh = NULL, .shape = ty_shape_def_default()};
     def.cut = (ty_cut_def){.radius = 0.02f, .normal = {0.0f, 0.0f, 1.0f}};
+    def.onigiri = (ty_onigiri_def){0.088f, 0.036f, 0.017f, 0.012f};
     def.shape.kind = TY_SHAPE_BOWL;
     return def;
 }
 
 bool ty_container_is_open(const ty_container* c)
 {
-    return c->def.kind == TY_CONTAINER_BOWL || c->def.kind == TY_CONTAINER_BOX || c->def.kind == TY_CONTAINER_GROUND ||
-           is_vessel(c);
+    return c->def.kind == TY_CONTAINER_BOWL || is_planes(c) || c->def.kind == TY_CONTAINER_GROUND || is_vessel(c);
 }
 
 bool ty_container_is_turned(const ty_container* c)
 {
-    return c->def.kind != TY_CONTAINER_BOX && c->def.kind != TY_CONTAINER_MESH;
+    return c->def.kind != TY_CONTAINER_BOX && c->def.kind != TY_CONTAINER_MESH && c->def.kind != TY_CONTAINER_ONIGIRI;
 }
 
 bool ty_cut_takes(const ty_cut_def* cut, ty_vec3 p)
@@ -74,11 +48,6 @@ ty_bounds ty_container_interior(const ty_container* c)
 }
 
 // --- lookup ---
-
-static const node* node_at(const ty_container* c, int i, int j, int k)
-{
-    return &c->nodes[((size_t)k * (size_t)c->size[1] + (size_t)j) * (size_t)c->size[0] + (size_t)i];
-}
 
 // Cell and fraction of a coordinate; what lies outside of the table is clamped and adds to *beyond.
 static int cell_of(float x, int size, float step, float* fraction, float* beyond)
@@ -150,17 +119,17 @@ static float box_wall(const ty_container* c, int wall, ty_vec3 p, ty_vec3* norma
 
 int ty_container_wall_count(const ty_container* c)
 {
-    return c->def.kind == TY_CONTAINER_BOX ? 5 : 1;
+    return is_planes(c) ? 5 : 1;
 }
 
 float ty_container_wall(const ty_container* c, int wall, ty_vec3 p, ty_vec3* normal)
 {
-    if (c->def.kind == TY_CONTAINER_BOX)
+    if (is_planes(c))
         return box_wall(c, wall, p, normal);
     if (c->def.kind == TY_CONTAINER_GROUND)
     {
         *normal = ty_vec3_make(0.0f, 1.0f, 0.0f);
-        return p.y;
+        return p.y - c->def.ground;
     }
     return ty_container_is_turned(c) ? turned_wall(c, p, normal) : field_lookup(c, p, normal);
 }
@@ -183,10 +152,10 @@ bool ty_container_holds(const ty_container* c, ty_vec3 p)
 {
     ty_vec3 n;
     if (c->def.kind == TY_CONTAINER_GROUND)
-        return p.y > 0.0f && p.x * p.x + p.z * p.z < ty_sqr(c->def.shape.radius);
+        return p.y > c->def.ground && p.x * p.x + p.z * p.z < ty_sqr(c->def.shape.radius);
     if (is_vessel(c) && !hollow_holds(c, p))
         return false;
-    if (c->def.kind == TY_CONTAINER_MESH)
+    if (c->def.kind == TY_CONTAINER_MESH || c->def.kind == TY_CONTAINER_ONIGIRI)
         return field_lookup(c, p, &n) > 0.0f;
     return ty_shape_interior_distance(&c->def.shape, p) < 0.0f;
 }
@@ -199,107 +168,6 @@ bool ty_container_lost(const ty_container* c, ty_vec3 p)
     if (c->def.kind == TY_CONTAINER_GROUND) // rolls on where nothing holds it
         return rho > ty_sqr(6.0f * c->def.shape.radius);
     return c->def.kind == TY_CONTAINER_BOWL && rho > ty_sqr(c->def.shape.radius);
-}
-
-// --- sampling ---
-
-typedef struct sampling
-{
-    ty_container* container;
-    const ty_world* world;
-    uint32_t prototype;
-} sampling;
-
-static void sample_rows(void* context, int64_t begin, int64_t end, int worker)
-{
-    (void)worker;
-    const sampling* s = context;
-    ty_container* c = s->container;
-    bool solid = c->def.kind == TY_CONTAINER_BOWL || is_vessel(c); // the mesh is the wall itself, not the space
-    float table = is_vessel(c) ? c->outside.low.y : 0.0f;
-    for (int64_t row = begin; row < end; row++)
-        for (int i = 0; i < c->size[0]; i++)
-        {
-            int j = (int)(row % c->size[1]), k = (int)(row / c->size[1]);
-            ty_vec3 p = ty_add(c->origin, ty_mul(ty_vec3_make((float)i, (float)j, (float)k), c->step));
-            ty_closest closest = {.distance = 0.0f};
-            bool found = ty_world_closest(s->world, s->prototype, p, 1e3f, &closest);
-            TY_ASSERT(found);
-            float gap = ty_world_inside(s->world, s->prototype, p) == solid ? -closest.distance : closest.distance;
-            c->nodes[(size_t)row * (size_t)c->size[0] + (size_t)i].gap = solid ? ty_min(gap, p.y - table) : gap;
-        }
-}
-
-static float difference(const ty_container* c, int axis, int i, int j, int k)
-{
-    int at[3] = {i, j, k}, low[3] = {i, j, k}, high[3] = {i, j, k};
-    if (c->size[axis] < 2)
-        return 0.0f;
-    low[axis] = at[axis] > 0 ? at[axis] - 1 : 0;
-    high[axis] = at[axis] < c->size[axis] - 1 ? at[axis] + 1 : at[axis];
-    float d = node_at(c, high[0], high[1], high[2])->gap - node_at(c, low[0], low[1], low[2])->gap;
-    return d / ((float)(high[axis] - low[axis]) * c->step);
-}
-
-static void sample_normals(ty_container* c)
-{
-    node* out = c->nodes;
-    for (int k = 0; k < c->size[2]; k++)
-        for (int j = 0; j < c->size[1]; j++)
-            for (int i = 0; i < c->size[0]; i++, out++)
-            {
-                out->normal =
-                    ty_vec3_make(difference(c, 0, i, j, k), difference(c, 1, i, j, k), difference(c, 2, i, j, k));
-                if (i == 0 && c->size[2] == 1)
-                    out->normal.x = 0.0f; // on the axis of a turned shape
-            }
-}
-
-// Lays the table over the mesh: the half-plane z = 0, x >= 0 of a turned shape, or the whole box.
-static void table_place(ty_container* c, ty_bounds b)
-{
-    ty_vec3 extent = ty_sub(b.high, b.low);
-    float pad = 0.06f * ty_max(extent.x, ty_max(extent.y, extent.z));
-    if (ty_container_is_turned(c))
-    {
-        float width = 0.5f * extent.x + pad, height = extent.y + 2.0f * pad;
-        c->step = ty_max(width, height) / (float)(TURNED_NODES - 1);
-        c->origin = ty_vec3_make(0.0f, b.low.y - pad, 0.0f);
-        c->size[0] = (int)(width / c->step) + 2;
-        c->size[1] = (int)(height / c->step) + 2;
-        c->size[2] = 1;
-        return;
-    }
-    ty_vec3 size = ty_add(extent, ty_mul(ty_vec3_make(1.0f, 1.0f, 1.0f), 2.0f * pad));
-    c->step = ty_pow(size.x * size.y * size.z / (float)GRID_NODES, 1.0f / 3.0f);
-    c->origin = ty_sub(b.low, ty_vec3_make(pad, pad, pad));
-    c->size[0] = (int)(size.x / c->step) + 2;
-    c->size[1] = (int)(size.y / c->step) + 2;
-    c->size[2] = (int)(size.z / c->step) + 2;
-}
-
-static ty_status field_sample(ty_container* c, const ty_mesh* mesh, ty_workers* workers, ty_error* error)
-{
-    table_place(c, mesh->bounds);
-    size_t rows = (size_t)c->size[1] * (size_t)c->size[2];
-    c->nodes = TY_TRY_ALLOC(node, rows * (size_t)c->size[0]);
-    if (!c->nodes)
-        return ty_error_set(error, TY_NO_MEMORY, "no memory for the container's distance field");
-    ty_world_def def = ty_world_def_default();
-    ty_world* world;
-    ty_status status = ty_world_create(&def, &world, error);
-    if (status != TY_OK)
-        return status;
-    sampling s = {c, world, 0};
-    status = ty_world_add_prototype(world, mesh, &s.prototype, error);
-    if (status == TY_OK)
-        status = ty_world_commit(world, error);
-    if (status == TY_OK && !ty_parallel_for(workers, (int64_t)rows, 8, sample_rows, &s))
-        status = ty_error_set(error, TY_INTERRUPTED, "interrupted while sampling the container");
-    if (status == TY_OK)
-        sample_normals(c);
-    ty_world_destroy(world);
-    return status;
 }
 
 // --- creation ---
@@ -391,20 +259,24 @@ static void widest_find(ty_container* c)
     if (ty_container_is_open(c))
         return;
     c->widest = ty_min(c->widest, 0.5f * size.y);
-    if (c->def.kind != TY_CONTAINER_MESH)
+    if (c->def.kind != TY_CONTAINER_MESH && c->def.kind != TY_CONTAINER_ONIGIRI)
         return;
     c->widest = 0.0f;
     for (size_t i = 0; i < (size_t)c->size[0] * (size_t)c->size[1] * (size_t)c->size[2]; i++)
         c->widest = ty_max(c->widest, c->nodes[i].gap);
 }
 
+// mesh: NULL where a formula tells the distance.
 static ty_status container_sample(ty_container* c, const ty_mesh* mesh, ty_workers* workers, ty_error* error)
 {
-    c->outside = mesh->bounds;
-    c->interior = c->def.kind == TY_CONTAINER_BOWL ? bowl_interior(&c->def.shape, mesh->bounds) : mesh->bounds;
+    if (mesh)
+    {
+        c->outside = mesh->bounds;
+        c->interior = c->def.kind == TY_CONTAINER_BOWL ? bowl_interior(&c->def.shape, mesh->bounds) : mesh->bounds;
+    }
     ty_status status = TY_OK;
-    if (c->def.kind != TY_CONTAINER_BOX)
-        status = field_sample(c, mesh, workers, error);
+    if (!is_planes(c))
+        status = container_field_sample(c, c->def.kind == TY_CONTAINER_BOX ? NULL : mesh, workers, error);
     if (status == TY_OK && is_vessel(c))
         status = vessel_find(c, error);
     return status;
@@ -412,29 +284,45 @@ static ty_status container_sample(ty_container* c, const ty_mesh* mesh, ty_worke
 
 static const int shape_kinds[] = {TY_SHAPE_BOWL, TY_SHAPE_BOX, TY_SHAPE_SPHERE, TY_SHAPE_DOME};
 
+static ty_status shape_make(ty_container* c, ty_mesh** mesh, ty_error* error)
+{
+    if (c->def.kind == TY_CONTAINER_MESH)
+        return mesh_load(&c->def, mesh, error);
+    if (c->def.kind == TY_CONTAINER_ONIGIRI)
+    {
+        c->interior = c->outside = onigiri_bounds(&c->def.onigiri);
+        return onigiri_check(&c->def.onigiri, error);
+    }
+    c->def.shape.kind = shape_kinds[c->def.kind];
+    c->def.shape.divisions = c->def.shape.divisions > FINE ? c->def.shape.divisions : FINE;
+    return ty_shape_create(&c->def.shape, mesh, error);
+}
+
+static ty_status ground_make(ty_container* c, ty_error* error)
+{
+    float r = c->def.shape.radius, y = c->def.ground;
+    c->interior = (ty_bounds){{-r, y, -r}, {r, y, r}};
+    return r > 0.0f ? TY_OK : ty_error_set(error, TY_BAD_INPUT, "container.radius: %g; it is above 0", (double)r);
+}
+
 ty_status ty_container_create(const ty_container_def* def, ty_workers* workers, ty_container** out, ty_error* error)
 {
     *out = NULL;
+    if (def->role == TY_CONTAINER_MOULD && (def->kind == TY_CONTAINER_BOWL || def->kind == TY_CONTAINER_GROUND))
+        return ty_error_set(error, TY_BAD_INPUT,
+                            "container.role: a mould is closed: take box, sphere, dome, onigiri or mesh");
     ty_container* c = TY_ALLOC(ty_container, 1);
     c->def = *def;
     ty_mesh* mesh = NULL;
     ty_status status;
     if (def->kind == TY_CONTAINER_GROUND)
-    {
-        float r = def->shape.radius;
-        c->interior = (ty_bounds){{-r, 0.0f, -r}, {r, 0.0f, r}};
-        status = r > 0.0f ? TY_OK : ty_error_set(error, TY_BAD_INPUT, "container.radius: %g; it is above 0", (double)r);
-    }
-    else if (def->kind == TY_CONTAINER_MESH)
-        status = mesh_load(def, &mesh, error);
+        status = ground_make(c, error);
     else
     {
-        c->def.shape.kind = shape_kinds[def->kind];
-        c->def.shape.divisions = def->shape.divisions > FINE ? def->shape.divisions : FINE;
-        status = ty_shape_create(&c->def.shape, &mesh, error);
+        status = shape_make(c, &mesh, error);
+        if (status == TY_OK)
+            status = container_sample(c, mesh, workers, error);
     }
-    if (status == TY_OK && mesh)
-        status = container_sample(c, mesh, workers, error);
     if (status == TY_OK)
         widest_find(c);
     ty_mesh_destroy(mesh);

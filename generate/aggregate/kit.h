@@ -14,9 +14,9 @@ typedef struct kit
     ty_workers* workers;
     mixture mix;
     ty_container* container;
+    ty_container* ground; // what a mould leaves the pile on; else NULL
     ty_fill_top top;
     ty_pile* pile;
-    ty_affine* frames; // of elastic bodies, [count of the pile]; else NULL
     ty_rng rng;
     int count; // of grains, once filled
     int lost, replaced;
@@ -26,6 +26,7 @@ typedef struct kit
     float drift_mean, drift_max; // of the width, while it was watched
     float start_repeat;
     bool rest;
+    float released, stood; // m, the topmost element over the plane below, of a mould that is taken off: then, at rest
 } kit;
 
 // make.c
@@ -57,5 +58,13 @@ TY_CHECKED ty_status kit_layer(kit* k, int layer, ty_error* error);
 // As many new bodies of each layer fall onto the pile as are missing.
 void kit_refill(kit* k);
 
-// xpbd_settle.c: settles or presses the pile as elastic bodies for the recipe's time; k->frames is where they stand.
+// xpbd_settle.c: settles or presses the pile as elastic bodies for the recipe's time; the pile's bodies are then where
+// they are, and bent.
 TY_CHECKED ty_status kit_soften(kit* k, ty_pile_metrics* metrics, ty_error* error);
+
+// make_stand.c
+TY_CHECKED ty_status press_check(const ty_aggregate_recipe* r, ty_error* error);
+bool recipe_is_mould(const ty_aggregate_recipe* r);
+bool kit_stands(const kit* k); // it ends standing by itself: pressed, moulded, or elastic and to come to rest
+// Takes the mould off, if there is one, and lets the pile come to rest as it is: nothing is put anew or stirred.
+TY_CHECKED ty_status kit_stand(kit* k, ty_pile_metrics* metrics, ty_error* error);

@@ -52,6 +52,8 @@ static ty_status recipe_check(const ty_aggregate_recipe* r, ty_error* error)
         (void)snprintf(place, sizeof place, "layers[%d].", i);
         status = fill_check(&((const ty_layer_def*)r->layers.items)[i].fill, place, error);
     }
+    if (status == TY_OK)
+        status = press_check(r, error);
     return status == TY_OK ? layers_check(r, error) : status;
 }
 
@@ -195,8 +197,14 @@ ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, 
     mixture_select(&k->mix, 0); // what is relative to a size is so to that of the lowest layer
     uint32_t count = (uint32_t)ty_pile_count(k->pile);
     const ty_body* bodies = ty_pile_bodies(k->pile);
-    uint32_t* owners;
-    ty_aggregate* a = mixture_write(&k->mix, k->recipe->seed, bodies, k->frames, count, &owners);
+    ty_affine* frames = ty_pile_is_bent(k->pile) ? TY_TRY_ALLOC(ty_affine, count) : NULL;
+    for (uint32_t i = 0; i < count && frames; i++)
+        frames[i] = ty_pile_frame(k->pile, (int)i);
+    uint32_t* owners = NULL;
+    ty_aggregate* a = NULL;
+    if (frames || !ty_pile_is_bent(k->pile))
+        a = mixture_write(&k->mix, k->recipe->seed, bodies, frames, count, &owners);
+    ty_free(frames);
     if (!a)
         return ty_error_set(error, TY_NO_MEMORY, "no memory for %u grains", count);
     attributes_write(k, owners, a);
@@ -231,9 +239,6 @@ static ty_status pile_cut(kit* k, ty_error* error)
         gone[i] = ty_cut_takes(cut, ty_pile_bodies(k->pile)[i].position);
         taken += gone[i];
     }
-    for (int i = 0, kept = 0; i < count && k->frames; i++)
-        if (!gone[i])
-            k->frames[kept++] = k->frames[i];
     ty_pile_remove(k->pile, gone);
     ty_free(gone);
     if (taken < count)
@@ -283,9 +288,17 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
             status = kit_layer(k, layer, error);
     }
     if (status == TY_OK && !elastic)
-        status = pile_finish(k, &metrics, error);
+    {
+        bool moulded = recipe_is_mould(k->recipe) && k->recipe->press.strain > 0.0f; // the press packs what is filled
+        if (!kit_stands(k))
+            status = pile_finish(k, &metrics, error);
+        else if (!moulded)
+            status = pile_rest(k, error);
+    }
     if (status == TY_OK && (elastic || k->recipe->press.strain > 0.0f))
         status = kit_soften(k, &metrics, error);
+    if (status == TY_OK && kit_stands(k))
+        status = kit_stand(k, &metrics, error);
     if (status == TY_OK)
         status = pile_cut(k, error);
     if (status == TY_OK)
@@ -319,9 +332,9 @@ static ty_status recipe_make(const void* def, ty_workers* workers, ty_aggregate*
     k->workers = workers;
     k->rng = ty_rng_make(recipe.seed, 0x626f6479, 0);
     status = sink ? kit_film(k, sink, error) : kit_make(k, out, error);
-    ty_free(k->frames);
     ty_pile_destroy(k->pile);
     ty_container_destroy(k->container);
+    ty_container_destroy(k->ground);
     mixture_term(&k->mix);
     ty_free(k);
     return status;

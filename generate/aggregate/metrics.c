@@ -93,7 +93,7 @@ void ty_pile_measure(ty_pile* pile, ty_pile_metrics* out, bool* held)
     for (int i = 0; i < pile->count; i++)
     {
         const support* s = &supports[i];
-        bool is_held = s->wall || (s->points >= 3 && s->neighbours >= 2);
+        bool is_held = s->wall || (pile->cohesive ? s->points >= 1 : s->points >= 3 && s->neighbours >= 2);
         out->floating += !is_held;
         neighbours += s->neighbours;
         if (held)

@@ -34,7 +34,7 @@ void ty_pile_destroy(ty_pile* pile)
         return;
     void* arrays[] = {pile->bodies, pile->poses,   pile->motions,   pile->balls,       pile->ball_first,
                       pile->pairs,  pile->touches, pile->old_pairs, pile->old_touches, pile->contacts,
-                      pile->order,  pile->walls,   pile->solid,     pile->rolls};
+                      pile->order,  pile->walls,   pile->solid,     pile->rolls,       pile->bends};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         ty_free(arrays[i]);
     ty_free(pile);
@@ -56,6 +56,8 @@ static void bodies_reserve(ty_pile* pile, int needed)
         return;
     size_t old = (size_t)pile->capacity, grown = (size_t)needed + (size_t)needed / 4 + 16;
     pile->bodies = ty_grow(pile->bodies, old, grown, sizeof *pile->bodies);
+    if (pile->bends)
+        pile->bends = ty_grow(pile->bends, old, grown, sizeof *pile->bends);
     pile->poses = ty_grow(pile->poses, old, grown, sizeof *pile->poses);
     pile->motions = ty_grow(pile->motions, old, grown, sizeof *pile->motions);
     pile->rolls = ty_grow(pile->rolls, old, grown, sizeof *pile->rolls);
@@ -81,7 +83,8 @@ static void body_enter(ty_pile* pile, int i)
     const ty_body* body = &pile->bodies[i];
     pile->poses[i] = (pose){.seen = body->position, .seen_rotation = body->rotation};
     pile->motions[i] = (motion){.v = body->velocity, .w = body->spin};
-    pile->max_radius = ty_max(pile->max_radius, pile->def.grains[body->grain].radius * body->scale);
+    pile->max_radius =
+        ty_max(pile->max_radius, pile->def.grains[body->grain].radius * body->scale * pile_bent_reach(pile, i));
     pile_refresh(pile, i);
     pile->stale = true;
 }
@@ -98,6 +101,8 @@ void ty_pile_add(ty_pile* pile, const ty_body* bodies, int count)
     for (int i = first; i < pile->count; i++)
     {
         pile->rolls[i] = ty_vec3_make(0.0f, 0.0f, 0.0f);
+        if (pile->bends)
+            pile->bends[i] = pile_bend_none(&pile->def.grains[pile->bodies[i].grain]);
         body_enter(pile, i);
     }
 }
@@ -141,6 +146,8 @@ void ty_pile_remove(ty_pile* pile, const bool* gone)
         if (gone[i])
             continue;
         pile->bodies[kept] = pile->bodies[i];
+        if (pile->bends)
+            pile->bends[kept] = pile->bends[i];
         pile->poses[kept] = pile->poses[i];
         pile->motions[kept] = pile->motions[i];
         pile->rolls[kept] = pile->rolls[i];
@@ -180,12 +187,20 @@ void pile_refresh(ty_pile* pile, int i)
     at->frame.x = ty_mul(turned.x, size);
     at->frame.y = ty_mul(turned.y, size);
     at->frame.z = ty_mul(turned.z, size);
+    const float* inverse_inertia = grain->inverse_inertia;
+    float stretch = size;
+    if (pile->bends)
+    {
+        at->frame = ty_affine_multiply(&at->frame, &pile->bends[i].map);
+        inverse_inertia = pile->bends[i].inverse_inertia;
+        stretch *= pile->bends[i].mean;
+    }
     ty_ball* balls = pile_balls(pile, i);
     for (int k = 0; k < grain->ball_count; k++)
-        balls[k] = (ty_ball){ty_map_point(&at->frame, grain->balls[k].center), grain->balls[k].radius * size};
+        balls[k] = (ty_ball){ty_map_point(&at->frame, grain->balls[k].center), grain->balls[k].radius * stretch};
     motion* m = &pile->motions[i];
     m->inverse_mass = pile->mean_volume / (grain->volume * body->scale * body->scale * body->scale);
-    inertia_to_world(grain->inverse_inertia, &turned, m->inverse_mass / (size * size), m->inverse_inertia);
+    inertia_to_world(inverse_inertia, &turned, m->inverse_mass / (size * size), m->inverse_inertia);
 }
 
 float ty_fill_top_height(const ty_fill_top* top, ty_vec3 p)

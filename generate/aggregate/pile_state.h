@@ -69,6 +69,15 @@ typedef struct pose
     float reach; // m, candidates lie within the mean of two bodies' reaches; faster bodies reach farther
 } pose;
 
+// How a body differs from its element as made.
+typedef struct bend
+{
+    ty_affine map;            // of the element's own frame
+    float mean;               // stretch of a ball's radius
+    float most;               // no length grows by more
+    float inverse_inertia[6]; // per unit mass, as of the element
+} bend;
+
 struct ty_pile
 {
     ty_pile_def def;
@@ -79,6 +88,7 @@ struct ty_pile
     float growth;           // common size factor, below 1 during a fill
     const ty_fill_top* lid; // during a fill
     ty_body* bodies;
+    bend* bends; // NULL = all are as their elements are made
     pose* poses;
     motion* motions;
     ty_vec3* rolls;  // impulses of rolling resistance that are kept, in the world
@@ -119,6 +129,12 @@ static inline ty_ball* pile_balls(const ty_pile* pile, int body)
     return pile->balls + pile->ball_first[body];
 }
 
+// By how much a body reaches farther than its element.
+static inline float pile_bent_reach(const ty_pile* pile, int body)
+{
+    return pile->bends ? pile->bends[body].most : 1.0f;
+}
+
 static inline int pile_ball_count(const ty_pile* pile, int body)
 {
     return pile->ball_first[body + 1] - pile->ball_first[body];
@@ -128,6 +144,10 @@ static inline int pile_ball_count(const ty_pile* pile, int body)
 void pile_refresh(ty_pile* pile, int body); // frame, balls and inertia from position and rotation
 void pile_turn(ty_body* body, ty_vec3 rotation_vector);
 float pile_wall(const ty_pile* pile, int wall, ty_vec3 p, ty_vec3* normal);
+
+// bend.c
+bend pile_bend_none(const ty_element* element);
+ty_affine pile_frame(const ty_pile* pile, int body); // element to world
 
 // wall.c
 void pile_walls_place(ty_pile* pile);                                 // where they are at this time

@@ -14,8 +14,7 @@ static void body_push(ty_pile* pile, int i, ty_vec3 arm, ty_vec3 impulse)
     ty_body* body = &pile->bodies[i];
     body->position = ty_mad(body->position, impulse, m->inverse_mass);
     pile_turn(body, symmetric_times(m->inverse_inertia, ty_cross(arm, impulse)));
-    float size = body->scale * pile->growth;
-    pile->poses[i].frame = ty_affine_from_trs(body->position, body->rotation, ty_vec3_make(size, size, size));
+    pile->poses[i].frame = pile_frame(pile, i);
 }
 
 static float weight(const motion* m, ty_vec3 arm, ty_vec3 n)

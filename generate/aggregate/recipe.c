@@ -23,7 +23,7 @@ ty_aggregate_recipe ty_aggregate_recipe_default(void)
                    .polish = 200,
                    .solver = TY_SOLVER_IMPULSE,
                    .modulus = 3e5f},
-        .press = {.strain = 0.0f, .seconds = 0.6f},
+        .press = {.strain = 0.0f, .seconds = 0.6f, .from = TY_PRESS_ABOVE, .release = true},
         .moisture = {.variation = 0.8f, .drying = 0.4f, .wet_basis = 0.62f},
         .animate = {.frames = 0, .fps = 24.0f},
         .seed = {7},

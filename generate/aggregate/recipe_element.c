@@ -85,8 +85,8 @@ const ty_param_table* ty_element_params(void)
 
 // --- container ---
 
-static const char* const container_kinds[] = {"bowl", "box", "sphere", "dome", "mesh", "ground", NULL};
-static const char* const container_roles[] = {"volume", "vessel", NULL};
+static const char* const container_kinds[] = {"bowl", "box", "sphere", "dome", "mesh", "ground", "onigiri", NULL};
+static const char* const container_roles[] = {"volume", "vessel", "mould", NULL};
 static const char* const cut_kinds[] = {"none", "sphere", "plane", NULL};
 
 static void cut_set_default(void* def)
@@ -112,6 +112,27 @@ static const ty_param_table cut_table = {
     cut_rows,
     TY_PARAM_COUNT(cut_rows)};
 
+static void onigiri_set_default(void* def)
+{
+    *(ty_onigiri_def*)def = ty_container_def_default().onigiri;
+}
+
+#define OWNER ty_onigiri_def
+static const ty_param onigiri_rows[] = {
+    FIELD("side", TY_PARAM_FLOAT, "mm", 1, 1e6, side, "of the triangle, before its corners are rounded"),
+    FIELD("thickness", TY_PARAM_FLOAT, "mm", 1, 1e6, thickness, "from face to face"),
+    FIELD("corner", TY_PARAM_FLOAT, "mm", 0, 1e6, corner, "radius of the triangle's corners"),
+    FIELD("edge", TY_PARAM_FLOAT, "mm", 0, 1e6, edge, "radius between faces and sides"),
+};
+#undef OWNER
+
+static const ty_param_table onigiri_table = {"aggregate.container.onigiri",
+                                             "A triangle with round corners and edges that stands on its side.",
+                                             sizeof(ty_onigiri_def),
+                                             onigiri_set_default,
+                                             onigiri_rows,
+                                             TY_PARAM_COUNT(onigiri_rows)};
+
 static void container_set_default(void* def)
 {
     *(ty_container_def*)def = ty_container_def_default();
@@ -120,10 +141,14 @@ static void container_set_default(void* def)
 #define OWNER ty_container_def
 static const ty_param container_rows[] = {
     {"shape", TY_PARAM_ENUM, "", 0, 0, container_kinds, NULL, offsetof(OWNER, kind),
-     "bowl and box are open at the top; sphere and dome are closed; ground is a plane for a heap", false},
+     "bowl and box are open at the top; sphere, dome and onigiri are closed; ground is a plane for a heap", false},
     FIELD("mesh", TY_PARAM_PATH, "", 0, 0, mesh, "a closed mesh, with shape mesh"),
     {"role", TY_PARAM_ENUM, "", 0, 0, container_roles, NULL, offsetof(OWNER, role),
-     "of a mesh: the surface of the space that is filled, or of the wall about a hollow open at the top", false},
+     "volume, vessel: a mesh is the surface of the space that is filled, or of the wall about a hollow open at the "
+     "top; "
+     "mould: a closed form, of box, sphere, dome, onigiri or mesh, that is taken off at the end",
+     false},
+    {"onigiri", TY_PARAM_GROUP, "", 0, 0, NULL, &onigiri_table, offsetof(OWNER, onigiri), "with shape onigiri", false},
     {"cut", TY_PARAM_GROUP, "", 0, 0, NULL, &cut_table, offsetof(OWNER, cut), "what is left out at the end", false},
     FIELD("radius", TY_PARAM_FLOAT, "m", 0, 1e4, shape.radius,
           "of bowl (rim, outside), sphere, dome; of the heap's foot on ground, as filled"),

@@ -24,12 +24,16 @@ static const ty_param settle_rows[] = {
     {"solver", TY_PARAM_ENUM, "", 0, 0, solvers, NULL, offsetof(OWNER, solver),
      "impulse: rigid elements that come to rest; xpbd: elastic ones that bend, run for max_seconds, and creep", false},
     FIELD("modulus", TY_PARAM_FLOAT, "Pa", 1e3, 1e8, modulus, "Young's, of elastic elements: with xpbd, or pressed"),
+    FIELD("rest", TY_PARAM_BOOL, "", 0, 0, rest,
+          "with xpbd: at the end the elements are rigid, as they are bent, and come to rest by impulses"),
 };
 #undef OWNER
 
 const ty_param_table recipe_settle = {"aggregate.settle",    "How the grains come to rest.",
                                       sizeof(ty_settle_def), settle_set_default,
                                       settle_rows,           TY_PARAM_COUNT(settle_rows)};
+
+static const char* const press_from[] = {"above", "around", NULL};
 
 static void press_set_default(void* def)
 {
@@ -38,16 +42,20 @@ static void press_set_default(void* def)
 
 #define OWNER ty_press_def
 static const ty_param press_rows[] = {
-    FIELD("strain", TY_PARAM_FLOAT, "", 0, 0.5, strain, "how far, of the height; 0 = not at all"),
+    FIELD("strain", TY_PARAM_FLOAT, "", 0, 0.5, strain, "how far, of height or extents; 0 = not at all"),
     FIELD("seconds", TY_PARAM_FLOAT, "s", 0.05, 10, seconds,
-          "simulated: down over .4 of it, up from .5 to .8, then left"),
+          "simulated: down over .4 of it, up from .5 to .8, then left; a mould stays down until it is taken off"),
+    {"from", TY_PARAM_ENUM, "", 0, 0, press_from, NULL, offsetof(OWNER, from),
+     "above: a lid, or a closed container towards its lowest point; around: a closed one towards its middle", false},
+    FIELD("release", TY_PARAM_BOOL, "", 0, 0, release,
+          "a container with role mould is taken off at the end, and the heap stands on the plane below"),
 };
 #undef OWNER
 
 const ty_param_table recipe_press = {
     "aggregate.press",
-    "A closed container is squeezed towards its lowest point, into an open one comes a lid; then both open "
-    "again. The elements are elastic in it, and stay bent and sheared as they lie at the end.",
+    "A closed container is squeezed, into an open one comes a lid; then both open again. The elements are elastic in "
+    "it; then they are rigid, bent and sheared as they are, and come to rest.",
     sizeof(ty_press_def),
     press_set_default,
     press_rows,

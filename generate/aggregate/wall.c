@@ -93,6 +93,13 @@ void ty_pile_move_walls(ty_pile* pile, ty_wall_motion_fn* fn, void* context)
     pile->stale = true;
 }
 
+void ty_pile_set_container(ty_pile* pile, const ty_container* container)
+{
+    pile->def.container = container;
+    pile->pair_count = pile->wall_first;
+    ty_pile_move_walls(pile, NULL, NULL);
+}
+
 float ty_pile_time(const ty_pile* pile)
 {
     return pile->time;

@@ -23,7 +23,7 @@ ty_xpbd* ty_xpbd_create(const ty_xpbd_def* def)
     x->stale = true;
     x->cohesive = (def->bridge.tension > 0.0f && def->bridge.volume > 0.0f) || def->bridge.adhesion > 0.0f;
     x->margin = XPBD_MARGIN;
-    x->squeeze = 1.0f;
+    x->squeeze = ty_vec3_make(1.0f, 1.0f, 1.0f);
     x->lid = TY_FLOAT_MAX;
     return x;
 }
@@ -147,13 +147,14 @@ ty_vec3 ty_xpbd_velocity(const ty_xpbd* x, int number)
     return x->particles[number].v;
 }
 
-void ty_xpbd_squeeze(ty_xpbd* x, float share)
+void ty_xpbd_squeeze(ty_xpbd* x, ty_vec3 center, ty_vec3 share)
 {
-    float height = 0.0f;
-    if (x->def.container)
-        height = ty_container_interior(x->def.container).high.y - ty_container_interior(x->def.container).low.y;
-    x->moved += fabsf(share - x->squeeze) * height;
+    TY_ASSERT(x->def.container);
+    ty_bounds b = ty_container_interior(x->def.container);
+    ty_vec3 size = ty_sub(b.high, b.low), change = ty_sub(share, x->squeeze);
+    x->moved += ty_length(ty_mul3(change, size)); // centre lies within: no wall moves farther
     x->squeeze = share;
+    x->squeeze_center = center;
 }
 
 void ty_xpbd_lid(ty_xpbd* x, float height)

@@ -3,6 +3,8 @@
 // the pull of water. Multipliers begin at 0 each time: friction undoes the slip of that substep alone.
 #include "xpbd_state.h"
 
+#define PULL_STEP 0.01e-3f // m, farthest that a pull moves a particle in a substep
+
 // --- walls ---
 
 float xpbd_wall(const ty_xpbd* x, int wall, ty_vec3 p, ty_vec3* normal)
@@ -12,12 +14,13 @@ float xpbd_wall(const ty_xpbd* x, int wall, ty_vec3 p, ty_vec3* normal)
         *normal = ty_vec3_make(0.0f, -1.0f, 0.0f);
         return x->lid - p.y;
     }
-    if (x->squeeze == 1.0f)
+    if (x->squeeze.x == 1.0f && x->squeeze.y == 1.0f && x->squeeze.z == 1.0f)
         return ty_container_wall(x->def.container, wall, p, normal);
-    float low = ty_container_interior(x->def.container).low.y; // the distance to first order: value over gradient
-    float gap =
-        ty_container_wall(x->def.container, wall, ty_vec3_make(p.x, low + (p.y - low) / x->squeeze, p.z), normal);
-    normal->y /= x->squeeze;
+    // The distance to first order: value over gradient.
+    ty_vec3 inverse = {1.0f / x->squeeze.x, 1.0f / x->squeeze.y, 1.0f / x->squeeze.z};
+    ty_vec3 from = ty_add(x->squeeze_center, ty_mul3(ty_sub(p, x->squeeze_center), inverse));
+    float gap = ty_container_wall(x->def.container, wall, from, normal);
+    *normal = ty_mul3(*normal, inverse);
     float steepness = ty_length(*normal);
     *normal = ty_mul(*normal, 1.0f / steepness);
     return gap / steepness;
@@ -215,6 +218,9 @@ static void couple_pull(ty_xpbd* x, couple* c)
     float radius = ty_min(a->radius, b->radius), mean = 2.0f * a->radius * b->radius / (a->radius + b->radius);
     c->wet = def->tension > 0.0f && def->volume > 0.0f && (gap <= 0.0f || c->wet) && gap < ty_bridge_end(def, radius);
     float force = ty_adhesion_force(def, mean, gap) + (c->wet ? ty_bridge_pull(def, radius, mean, gap) : 0.0f);
+    // A pull that carried a particle through most of the reach of stickiness at once would shake the pile apart.
+    float lightest = ty_max(a->inverse_mass, b->inverse_mass);
+    force = ty_min(force, lightest > 0.0f ? PULL_STEP / (h * h * lightest) : 0.0f);
     ty_vec3 n = ty_normalize(ty_sub(a->x, b->x));
     particle_move(a, n, -force * h * h * a->inverse_mass);
     particle_move(b, n, force * h * h * b->inverse_mass);

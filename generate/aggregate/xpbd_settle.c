@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fill that settles, or a settled pile that is pressed, as elastic bodies; rigid poses and bent frames come back.
+// A fill that settles, or a settled pile that is pressed, as elastic bodies; poses and bends come back.
 #include "kit.h"
 #include <string.h>
 #include <tsuya/base/log.h>
 #include <tsuya/generate/xpbd.h>
 
-// Share of the press's depth at a share of its time: down, held, up again, and left alone.
-static float press_depth(float t)
+// Share of the press's depth at a share of its time: down, held, up again, and left alone; a mould stays where it is
+// until it is taken off.
+static float press_depth(const kit* k, float t)
 {
-    float s = ty_min(ty_clamp(t / 0.4f, 0.0f, 1.0f), ty_clamp((0.8f - t) / 0.3f, 0.0f, 1.0f));
+    bool stays = recipe_is_mould(k->recipe);
+    float s = ty_min(ty_clamp(t / 0.4f, 0.0f, 1.0f), stays ? 1.0f : ty_clamp((0.8f - t) / 0.3f, 0.0f, 1.0f));
     return s * s * (3.0f - 2.0f * s);
 }
 
@@ -20,14 +22,19 @@ static float top_of(const ty_xpbd* x, const kit* k)
     return top;
 }
 
-// A closed mould is squeezed towards its lowest point; into an open vessel comes a flat lid, from the top of the pile.
+// A closed container is squeezed, into an open one comes a flat lid, from the top of the pile.
 static void press_place(ty_xpbd* x, const kit* k, float top, float t)
 {
-    float depth = k->recipe->press.strain * press_depth(t), low = ty_container_interior(k->container).low.y;
+    const ty_press_def* press = &k->recipe->press;
+    float depth = press->strain * press_depth(k, t), share = 1.0f - depth;
+    ty_bounds inside = ty_container_interior(k->container);
+    ty_vec3 middle = ty_mul(ty_add(inside.low, inside.high), 0.5f);
     if (ty_container_is_open(k->container))
-        ty_xpbd_lid(x, t < 0.8f ? top - depth * (top - low) : TY_FLOAT_MAX);
+        ty_xpbd_lid(x, t < 0.8f ? top - depth * (top - inside.low.y) : TY_FLOAT_MAX);
+    else if (press->from == TY_PRESS_AROUND)
+        ty_xpbd_squeeze(x, middle, ty_vec3_make(share, share, share));
     else
-        ty_xpbd_squeeze(x, 1.0f - depth);
+        ty_xpbd_squeeze(x, ty_vec3_make(middle.x, inside.low.y, middle.z), ty_vec3_make(1.0f, share, 1.0f));
 }
 
 static void run(ty_xpbd* x, const kit* k, float seconds, bool press)
@@ -42,24 +49,34 @@ static void run(ty_xpbd* x, const kit* k, float seconds, bool press)
     }
 }
 
-// Poses and frames of what stayed in the container.
-static void frames_take(kit* k, const ty_xpbd* x)
+// Bodies where they are now, bent as they are now; without those that left the container.
+static void bodies_take(kit* k, const ty_xpbd* x)
 {
-    int count = ty_pile_count(k->pile), kept = 0;
+    int count = ty_pile_count(k->pile), lost = 0;
     ty_body* bodies = TY_ALLOC(ty_body, count);
+    ty_affine* bends = TY_ALLOC(ty_affine, count);
     bool* gone = TY_ALLOC(bool, count);
-    k->frames = TY_ALLOC(ty_affine, count);
     for (int i = 0; i < count; i++)
     {
-        ty_xpbd_frame(x, i, &bodies[i], &k->frames[kept]);
+        ty_affine frame;
+        ty_xpbd_frame(x, i, &bodies[i], &frame);
+        ty_quat q = bodies[i].rotation, back = {-q.x, -q.y, -q.z, q.w};
+        float size = 1.0f / bodies[i].scale;
+        bends[i] = ty_affine_from_trs(ty_vec3_make(0.0f, 0.0f, 0.0f), back, ty_vec3_make(size, size, size));
+        bends[i] = ty_affine_multiply(&bends[i], &frame);
+        bodies[i].position = frame.t;
         gone[i] = ty_container_is_open(k->container) && ty_container_lost(k->container, bodies[i].position);
-        kept += !gone[i];
+        lost += gone[i];
     }
     ty_pile_set_bodies(k->pile, bodies);
-    if (kept < count)
+    for (int i = 0; i < count; i++)
+        ty_pile_bend(k->pile, i, &bends[i]);
+    if (lost > 0)
         ty_pile_remove(k->pile, gone);
-    k->lost += count - kept;
+    k->lost += lost;
+    k->count = ty_pile_count(k->pile);
     ty_free(bodies);
+    ty_free(bends);
     ty_free(gone);
 }
 
@@ -83,7 +100,7 @@ ty_status kit_soften(kit* k, ty_pile_metrics* metrics, ty_error* error)
         run(x, k, settle->max_seconds, false);
     if (press->strain > 0.0f)
         run(x, k, press->seconds, true);
-    frames_take(k, x);
+    bodies_take(k, x);
     ty_pile_measure(k->pile, metrics, NULL);
     ty_xpbd_speeds(x, &metrics->speed_rms, &metrics->speed_max);
     k->settled = *metrics;

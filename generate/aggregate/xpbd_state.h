@@ -72,7 +72,8 @@ struct ty_xpbd
     float moved; // m, how far particles may have come since candidates were found
     bool stale, cohesive;
     float margin; // m, gaps up to here are candidates
-    float squeeze, lid;
+    float lid;
+    ty_vec3 squeeze, squeeze_center;
 };
 
 static inline void particle_move(particle* p, ty_vec3 direction, float distance)

@@ -73,13 +73,23 @@ typedef struct ty_settle_def
     float adhesion;    // J/m^2, work of adhesion of sticky surfaces, 0..10
     int solver;        // ty_solver
     float modulus;     // Pa, Young's of an elastic element, 1e3..1e8
+    bool rest;         // elastic elements end as rigid ones, bent as they are, that come to rest
 } ty_settle_def;
 
+typedef enum ty_press_from
+{
+    TY_PRESS_ABOVE,  // a lid, or the container towards its lowest point
+    TY_PRESS_AROUND, // a closed container from all sides towards its middle, as a hand does
+} ty_press_from;
+
 // A mould that closes on the elastic elements by strain and opens again: over .4 of the time down, .1 held, .3 up.
+// After that they are rigid, as they are bent, and come to rest; of a container that is a mould once it is gone.
 typedef struct ty_press_def
 {
-    float strain;  // of the height, 0..0.5; 0 = none
+    float strain;  // of the extents, 0..0.5; 0 = none
     float seconds; // 0.05..10
+    int from;      // ty_press_from
+    bool release;  // a mould is taken away in the end
 } ty_press_def;
 
 // The attribute `moisture` is a number in -1..1 a grain, to be scaled by the material.

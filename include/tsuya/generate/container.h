@@ -7,18 +7,20 @@
 
 typedef enum ty_container_kind
 {
-    TY_CONTAINER_BOWL,   // open; the pile may rise above the rim; a table lies at y = 0
-    TY_CONTAINER_BOX,    // open at the top; four walls and a floor, higher than any pile
-    TY_CONTAINER_SPHERE, // closed
-    TY_CONTAINER_DOME,   // closed
-    TY_CONTAINER_MESH,   // a volume, or the wall of a vessel
-    TY_CONTAINER_GROUND, // the plane y = 0 without walls; radius is that of the heap's foot as it is filled
+    TY_CONTAINER_BOWL,    // open; the pile may rise above the rim; a table lies at y = 0
+    TY_CONTAINER_BOX,     // open at the top; four walls and a floor, higher than any pile
+    TY_CONTAINER_SPHERE,  // closed
+    TY_CONTAINER_DOME,    // closed
+    TY_CONTAINER_MESH,    // a volume, or the wall of a vessel
+    TY_CONTAINER_GROUND,  // the plane y = 0 without walls; radius is that of the heap's foot as it is filled
+    TY_CONTAINER_ONIGIRI, // closed: a triangle with round corners that stands on y = 0
 } ty_container_kind;
 
 typedef enum ty_container_role
 {
     TY_CONTAINER_VOLUME, // the mesh is the surface of the space to be filled
     TY_CONTAINER_VESSEL, // the mesh is the surface of a wall, open at the top; its hollow is filled up to the rim
+    TY_CONTAINER_MOULD,  // any closed form, a box too: it shapes what is in it, and is taken away
 } ty_container_role;
 
 typedef enum ty_cut_kind
@@ -37,14 +39,25 @@ typedef struct ty_cut_def
     ty_vec3 normal;
 } ty_cut_def;
 
+// All in metres.
+typedef struct ty_onigiri_def
+{
+    float side;      // of the triangle, before its corners are rounded
+    float thickness; // along z
+    float corner;    // radius of the triangle's corners
+    float edge;      // radius between faces and sides
+} ty_onigiri_def;
+
 // The fields of shape that apply are those of the scene's shape of the same name, with the same defaults.
 typedef struct ty_container_def
 {
     int kind;         // ty_container_kind
     const char* mesh; // path of a closed mesh, for TY_CONTAINER_MESH
-    int role;         // ty_container_role, of a mesh; the others are what they are
+    int role;         // ty_container_role; volume and vessel are of a mesh, the others are what they are
     ty_cut_def cut;
+    ty_onigiri_def onigiri;
     ty_shape_def shape; // its kind is set from kind
+    float ground;       // m, height of the plane of TY_CONTAINER_GROUND
 } ty_container_def;
 
 ty_container_def ty_container_def_default(void); // a rice bowl

@@ -88,6 +88,8 @@ typedef ty_wall_motion ty_wall_motion_fn(void* context, int wall, float seconds)
 // From now on the walls move: nobody sleeps, and contacts take the wall's own velocity into account. NULL = they stand
 // where the container has them. Fill before they move.
 void ty_pile_move_walls(ty_pile* pile, ty_wall_motion_fn* fn, void* context);
+// Other walls from now on; NULL = none. What bodies had from the walls before is forgotten. Borrowed as the def's.
+void ty_pile_set_container(ty_pile* pile, const ty_container* container);
 float ty_pile_time(const ty_pile* pile); // s, all substeps so far
 
 // One substep of 1/rate: soft contacts by sequential impulses that are kept from substep to substep, then a sweep
@@ -110,10 +112,17 @@ ty_pile_end ty_pile_settle(ty_pile* pile, float max_seconds, ty_workers* workers
 void ty_pile_polish(ty_pile* pile, int sweeps, ty_workers* workers);
 void ty_pile_set_bodies(ty_pile* pile, const ty_body* bodies); // count as it is
 
+// From now on the body is its element as map bends it within the element's own frame, before size and turn: balls move
+// with it and grow by its mean stretch, the inertia follows, the mass stays. map's shift is not used.
+void ty_pile_bend(ty_pile* pile, int body, const ty_affine* map);
+bool ty_pile_is_bent(const ty_pile* pile);              // some body has been
+ty_affine ty_pile_frame(const ty_pile* pile, int body); // element to world, with size and bend
+
 typedef struct ty_pile_metrics
 {
     int count;
-    int floating;       // neither at a wall nor held at three points by two neighbours, gaps up to 2 % of the width
+    int floating;       // neither at a wall nor held at three points by two neighbours, gaps up to 2 % of the width;
+                        // where grains stick to each other, one point holds
     float contacts;     // neighbours that touch, gaps up to 1 um, per grain, mean
     float loaded;       // those that press on it by over a hundredth of a mean grain's weight, per grain, mean
     float neighbours;   // those with gaps up to 2 % of the width, per grain, mean

@@ -74,9 +74,8 @@ ty_vec3 ty_xpbd_velocity(const ty_xpbd* x, int number);
 // One substep of 1/rate. Equal bits for any worker count.
 void ty_xpbd_step(ty_xpbd* x, ty_workers* workers);
 
-// Squeezes the container along y to this share of its height above its lowest point. open: a lid lies at that height
-// of the span given, for containers without one.
-void ty_xpbd_squeeze(ty_xpbd* x, float share);
+// Squeezes the container towards center, a point within or at its surface, to these shares of its extents: 1 = as made.
+void ty_xpbd_squeeze(ty_xpbd* x, ty_vec3 center, ty_vec3 share);
 void ty_xpbd_lid(ty_xpbd* x, float height); // a wall that keeps everything below; infinity = none
 
 // The frame of a body: where its element stands, and how far it is bent, sheared and flattened.

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// Moulds: their form, bodies that stay bent, and heaps that keep the form of a mould or do not.
+#include "recipe_made.h"
+#include <tsuya/generate/pile.h>
+
+#define RADIUS 2e-3f
+
+static ty_container* container(const ty_container_def* def)
+{
+    ty_container* c;
+    ty_error error;
+    if (ty_container_create(def, NULL, &c, &error) != TY_OK)
+        fail_msg("%s", error.text);
+    return c;
+}
+
+// The triangle stands on y = 0: distances to base, face, tip and sides, and what lies in it.
+static void test_onigiri(void** state)
+{
+    (void)state;
+    ty_container_def def = ty_container_def_default();
+    def.kind = TY_CONTAINER_ONIGIRI;
+    def.onigiri = (ty_onigiri_def){0.06f, 0.03f, 0.01f, 0.008f};
+    ty_container* c = container(&def);
+    float middle = 0.06f / (2.0f * sqrtf(3.0f)), top = 3.0f * middle - 0.01f;
+    ty_bounds b = ty_container_interior(c);
+    assert_float_equal(b.low.y, 0.0f, 1e-7f);
+    assert_float_equal(b.high.y, top, 1e-6f);
+    assert_float_equal(b.high.z, 0.015f, 1e-7f);
+    assert_float_equal(b.high.x, 0.03f - 0.01f * (sqrtf(3.0f) - 1.0f), 1e-6f);
+    ty_vec3 n;
+    assert_float_equal(ty_container_wall(c, 0, ty_vec3_make(0.0f, 0.002f, 0.0f), &n), 0.002f, 1e-4f);
+    assert_true(n.y > 0.99f);
+    assert_float_equal(ty_container_wall(c, 0, ty_vec3_make(0.0f, middle, 0.012f), &n), 0.003f, 1e-4f);
+    assert_true(n.z < -0.99f);
+    assert_float_equal(ty_container_wall(c, 0, ty_vec3_make(0.0f, top - 0.004f, 0.0f), &n), 0.004f, 1e-4f);
+    ty_vec3 side = {0.5f * sqrtf(3.0f) * (middle - 0.003f), middle + 0.5f * (middle - 0.003f), 0.0f};
+    assert_float_equal(ty_container_wall(c, 0, side, &n), 0.003f, 1e-4f);
+    assert_true(n.x < -0.8f && n.y < -0.4f);
+    // On the round edge between base and face: behind its centre line by .002 along the diagonal.
+    float d = 0.008f - 0.002f / sqrtf(2.0f);
+    assert_float_equal(ty_container_wall(c, 0, ty_vec3_make(0.0f, d, 0.015f - d), &n), 0.006f, 1.5e-4f);
+    assert_true(ty_container_holds(c, ty_vec3_make(0.0f, top - 1e-3f, 0.0f)));
+    assert_false(ty_container_holds(c, ty_vec3_make(0.029f, 1e-3f, 0.0f))); // where the sharp corner would be
+    assert_false(ty_container_is_open(c));
+    ty_container_destroy(c);
+}
+
+// A box as a mould is closed and has round edges.
+static void test_block(void** state)
+{
+    (void)state;
+    ty_container_def def = ty_container_def_default();
+    def.kind = TY_CONTAINER_BOX;
+    def.role = TY_CONTAINER_MOULD;
+    def.shape.size = ty_vec3_make(0.025f, 0.01f, 0.011f);
+    def.shape.rounding = 0.008f;
+    ty_container* c = container(&def);
+    ty_vec3 n;
+    assert_false(ty_container_is_open(c));
+    assert_int_equal(ty_container_wall_count(c), 1);
+    assert_float_equal(ty_container_wall(c, 0, ty_vec3_make(0.0f, 0.008f, 0.0f), &n), 0.002f, 1e-4f);
+    assert_true(n.y < -0.99f);
+    assert_false(ty_container_holds(c, ty_vec3_make(0.0245f, 0.0095f, 0.0f)));
+    ty_container_destroy(c);
+}
+
+static ty_wall_motion belt(void* context, int wall, float seconds)
+{
+    (void)context, (void)wall;
+    const ty_vec3 velocity = {0.1f, 0.0f, 0.0f};
+    return (ty_wall_motion){ty_mul(velocity, seconds), ty_quat_identity(), velocity, {0.0f, 0.0f, 0.0f}};
+}
+
+// A ball that is stretched by s to both sides of the way it rolls: its proxy grows by s^(1/3), its moment about the
+// axis it rolls about is m r^2 (1 + s^2) / 5. Put on a belt it ends at I / (I + m R^2) of its speed.
+static void test_bent_body(void** state)
+{
+    (void)state;
+    const float s = 1.6f, radius = RADIUS * ty_pow(s, 1.0f / 3.0f);
+    ty_element_def ball = ty_element_def_default();
+    ball.kind = TY_ELEMENT_BALL;
+    ball.length = ball.width = ball.thickness = 2.0f * RADIUS;
+    ball.variants = 1;
+    ty_element grain;
+    ty_error error;
+    assert_int_equal(ty_element_init(&ball, (ty_seed){1}, 0, &grain, &error), TY_OK);
+    ty_container_def room = ty_container_def_default();
+    room.kind = TY_CONTAINER_GROUND;
+    room.ground = 0.01f;
+    ty_container* ground = container(&room);
+    ty_pile_def def = ty_pile_def_default();
+    def.rolling = 0.0f;
+    def.grains = &grain;
+    def.grain_count = 1;
+    def.container = ground;
+    ty_pile* pile = ty_pile_create(&def);
+    ty_body body = {.position = {0.0f, 0.01f + radius, 0.0f}, .rotation = ty_quat_identity(), .scale = 1.0f};
+    ty_pile_add(pile, &body, 1);
+    assert_false(ty_pile_is_bent(pile));
+    ty_affine map = ty_affine_identity();
+    map.x.x = s;
+    ty_pile_bend(pile, 0, &map);
+    ty_affine frame = ty_pile_frame(pile, 0);
+    assert_float_equal(frame.x.x, s, 1e-6f);
+    assert_float_equal(frame.y.y, 1.0f, 1e-6f);
+    ty_pile_move_walls(pile, belt, NULL);
+    for (int i = 0; i < 1000; i++)
+        ty_pile_step(pile, NULL);
+    const ty_body* b = ty_pile_bodies(pile);
+    float moment = (1.0f + s * s) / 5.0f, expected = moment / (moment + ty_sqr(radius / RADIUS));
+    print_message("bent ball on a belt: %.4f of its speed, %.4f expected\n", (double)(b->velocity.x / 0.1f),
+                  (double)expected);
+    assert_float_equal(b->velocity.x / 0.1f, expected, 0.01f * expected);
+    assert_float_equal(b->position.y, 0.01f + radius, 0.02f * radius);
+    body = *b;
+    ty_pile_add(pile, &body, 1); // one that is not bent
+    frame = ty_pile_frame(pile, 1);
+    assert_float_equal(ty_length(frame.x), 1.0f, 1e-6f);
+    ty_pile_destroy(pile);
+    ty_container_destroy(ground);
+    ty_element_term(&grain);
+}
+
+// Of grains that stick by w and are wet by the tension given, pressed by a hand and let go.
+static ty_aggregate_recipe rice_ball(float adhesion, float tension)
+{
+    ty_aggregate_recipe r = ty_aggregate_recipe_default();
+    r.element.variants = 2;
+    r.container.kind = TY_CONTAINER_ONIGIRI;
+    r.container.role = TY_CONTAINER_MOULD;
+    r.container.onigiri = (ty_onigiri_def){0.042f, 0.021f, 0.008f, 0.006f};
+    r.fill.target = TY_FILL_DENSITY;
+    r.fill.density = 0.6f;
+    r.settle.adhesion = adhesion;
+    r.settle.cohesion = tension;
+    r.settle.rolling = 0.01f;
+    r.press.strain = 0.06f;
+    r.press.seconds = 0.2f;
+    r.press.from = TY_PRESS_AROUND;
+    return r;
+}
+
+static double kept_height(const ty_aggregate_recipe* r)
+{
+    ty_aggregate* a = made(r, NULL);
+    double kept = metric(a, "\"height_mm\"") / metric(a, "\"released_height_mm\"");
+    print_message("%u grains keep %.3f of %.1f mm\n", a->instance_count, kept, metric(a, "\"released_height_mm\""));
+    assert_non_null(strstr(a->metrics, "\"rest\": true"));
+    ty_aggregate_destroy(a);
+    return kept;
+}
+
+static void test_mould_keeps_or_slumps(void** state)
+{
+    (void)state;
+    ty_aggregate_recipe sticky = rice_ball(1.0f, 0.072f), dry = rice_ball(0.0f, 0.0f);
+    assert_true(kept_height(&sticky) > 0.9);
+    assert_true(kept_height(&dry) < 0.75);
+    dry.press.release = false; // it stays in the mould: no plane below it
+    ty_aggregate* held = made(&dry, NULL);
+    assert_null(strstr(held->metrics, "released_height_mm"));
+    ty_aggregate_destroy(held);
+}
+
+static void test_refused(void** state)
+{
+    (void)state;
+    ty_aggregate_recipe r = ty_aggregate_recipe_default();
+    r.container.role = TY_CONTAINER_MOULD; // a bowl
+    assert_refused(&r, "container.role", "onigiri");
+    r = ty_aggregate_recipe_default();
+    r.press.strain = 0.1f;
+    r.press.from = TY_PRESS_AROUND;
+    assert_refused(&r, "press.from", "closed");
+    r = rice_ball(0.0f, 0.0f);
+    r.container.onigiri.corner = 0.02f;
+    assert_refused(&r, "container.onigiri.corner", "0..12.1");
+    r = rice_ball(0.0f, 0.0f);
+    r.container.onigiri.edge = 0.011f;
+    assert_refused(&r, "container.onigiri.edge", "0..10.5");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_onigiri),   cmocka_unit_test(test_block),
+        cmocka_unit_test(test_bent_body), cmocka_unit_test(test_mould_keeps_or_slumps),
+        cmocka_unit_test(test_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
