@@ -2,6 +2,8 @@
 // Position projection: overlaps are pushed apart without velocities, to fill a space and to polish a settled pile.
 #include "pile_state.h"
 
+#define OVER_RELAXATION 1.4f // of each correction: thirty times less is left after as many sweeps
+
 static ty_vec3 ball_center(const ty_pile* pile, int body, int ball)
 {
     return ty_map_point(&pile->poses[body].frame, pile->def.grains[pile->bodies[body].grain].balls[ball].center);
@@ -30,7 +32,7 @@ static void touch_project_wall(ty_pile* pile, const pair* p, const touch* t, flo
     if (gap >= 0.0f)
         return;
     ty_vec3 arm = ty_sub(ty_mad(center, n, -radius), pile->bodies[p->a].position);
-    body_push(pile, p->a, arm, ty_mul(n, -gap / weight(&pile->motions[p->a], arm, n)));
+    body_push(pile, p->a, arm, ty_mul(n, -OVER_RELAXATION * gap / weight(&pile->motions[p->a], arm, n)));
 }
 
 static void touch_project(ty_pile* pile, const pair* p, const touch* t, float radius)
@@ -45,7 +47,7 @@ static void touch_project(ty_pile* pile, const pair* p, const touch* t, float ra
     ty_vec3 arm_a = ty_sub(ty_mad(from, n, -radius), pile->bodies[p->a].position);
     ty_vec3 arm_b = ty_sub(ty_mad(to, n, other), pile->bodies[p->b].position);
     float sum = weight(&pile->motions[p->a], arm_a, n) + weight(&pile->motions[p->b], arm_b, n);
-    ty_vec3 impulse = ty_mul(n, (radius + other - length) / sum);
+    ty_vec3 impulse = ty_mul(n, OVER_RELAXATION * (radius + other - length) / sum);
     body_push(pile, p->a, arm_a, impulse);
     body_push(pile, p->b, arm_b, ty_neg(impulse));
 }

@@ -253,10 +253,10 @@ static void test_small_pile_rests(void** state)
     for (int i = 0; i < COUNT; i++)
         drift += (double)ty_length(ty_sub(ty_pile_bodies(s.pile)[i].position, before[i].position)) / COUNT;
     assert_true(drift < 0.001 * (double)grains[0].width);
-    ty_pile_polish(s.pile, 400, NULL);
+    ty_pile_polish(s.pile, 100, NULL);
     ty_pile_metrics polished;
     ty_pile_measure(s.pile, &polished, NULL);
-    assert_true(polished.overlap_max < 0.003f);
+    assert_true(polished.overlap_max < 2e-4f);
     assert_int_equal(polished.floating, 0);
     settled_term(&s);
 }
