@@ -14,13 +14,24 @@ ty_bridge_def ty_bridge_def_default(void)
     return (ty_bridge_def){.density = 1100.0f};
 }
 
+static float saturation_of(float wet_basis)
+{
+    return ty_clamp((wet_basis - DRY) / (SATURATED - DRY), 0.0f, 1.0f);
+}
+
 ty_bridge_def ty_bridge_of_moisture(float wet_basis)
 {
     ty_bridge_def def = ty_bridge_def_default();
-    float saturation = ty_clamp((wet_basis - DRY) / (SATURATED - DRY), 0.0f, 1.0f);
+    float saturation = saturation_of(wet_basis);
     def.volume = FULL * ty_min(1.0f, saturation / PENDULAR);
     def.tension = saturation > 0.0f ? 0.072f * ty_min(1.0f, (1.0f - saturation) / (1.0f - CAPILLARY)) : 0.0f;
     return def;
+}
+
+float ty_bridge_strength(float wet_basis)
+{
+    float saturation = saturation_of(wet_basis);
+    return ty_min(ty_min(1.0f, saturation / PENDULAR), (1.0f - saturation) / (1.0f - CAPILLARY));
 }
 
 float ty_bridge_end(const ty_bridge_def* def, float radius)

@@ -8,9 +8,10 @@ typedef struct kit
 {
     const ty_aggregate_recipe* recipe; // complete
     const ty_fill_def* fill;           // of the layer that is selected in mix
-    int layer;                         // which: 0 is the recipe's own fill
-    int wanted[MIXTURE_KINDS];         // bodies of each layer so far
-    double spread;                     // m^3 that all so far take, with the space between them
+    ty_mechanics mechanics;
+    int layer;                 // which: 0 is the recipe's own fill
+    int wanted[MIXTURE_KINDS]; // bodies of each layer so far
+    double spread;             // m^3 that all so far take, with the space between them
     ty_workers* workers;
     mixture mix;
     ty_container* container;
@@ -35,7 +36,6 @@ ty_body kit_body(kit* k, ty_vec3 position, float steepest);
 // Elements, container, and a pile of them without a body.
 TY_CHECKED ty_status kit_pile(kit* k, ty_error* error);
 TY_CHECKED ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error);
-ty_bridge_def kit_bridge(const ty_aggregate_recipe* r); // the liquid between the grains, or none
 
 // film.c
 TY_CHECKED ty_status kit_film(kit* k, const ty_aggregate_sink* sink, ty_error* error);

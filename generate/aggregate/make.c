@@ -54,6 +54,8 @@ static ty_status recipe_check(const ty_aggregate_recipe* r, ty_error* error)
     }
     if (status == TY_OK)
         status = press_check(r, error);
+    if (status == TY_OK)
+        status = ty_mechanics_check(r, error);
     return status == TY_OK ? layers_check(r, error) : status;
 }
 
@@ -167,12 +169,15 @@ static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
 
 // --- the result ---
 
+#define WET_SPREAD 0.06f // of the water: what the attribute moisture of 1 is
+
 // Chance and drying in one number: mean about 0, within -1..1, less at the surface.
 static void attributes_write(const kit* k, const uint32_t* owners, ty_aggregate* out)
 {
     float* moisture = ty_aggregate_add_attribute(out, "moisture");
     float* tint = ty_aggregate_add_attribute(out, "tint");
     float* depth = ty_aggregate_add_attribute(out, "depth");
+    float* wet_basis = k->mechanics.given ? ty_aggregate_add_attribute(out, "wet_basis") : NULL;
     ty_pile_depth(k->pile, depth);
     const ty_wetness_def* wet = &k->recipe->moisture;
     uint32_t count = (uint32_t)ty_pile_count(k->pile);
@@ -190,6 +195,8 @@ static void attributes_write(const kit* k, const uint32_t* owners, ty_aggregate*
         tint[i] = tint[owners[i]];
         depth[i] = depth[owners[i]];
     }
+    for (uint32_t i = 0; i < out->instance_count && wet_basis; i++)
+        wet_basis[i] = ty_clamp(k->mechanics.state.wet_basis * (1.0f + WET_SPREAD * moisture[i]), 0.05f, 1.0f);
 }
 
 ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error)
@@ -212,18 +219,6 @@ ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, 
     a->metrics = kit_metrics(k, metrics);
     *out = a;
     return TY_OK;
-}
-
-ty_bridge_def kit_bridge(const ty_aggregate_recipe* r)
-{
-    ty_bridge_def wet = ty_bridge_of_moisture(r->moisture.wet_basis);
-    if (r->settle.cohesion >= 0.0f)
-    {
-        wet = ty_bridge_of_moisture(0.5f); // bridges of full size
-        wet.tension = r->settle.cohesion;
-    }
-    wet.adhesion = r->settle.adhesion;
-    return wet;
 }
 
 // Leaves out what lies in the cut, now that nothing moves any more.
@@ -262,7 +257,7 @@ ty_status kit_pile(kit* k, ty_error* error)
     def.friction = k->recipe->settle.friction;
     def.rolling = k->recipe->settle.rolling;
     def.rate = k->recipe->settle.rate;
-    def.bridge = kit_bridge(k->recipe);
+    def.bridge = k->mechanics.bridge;
     def.grains = k->mix.grains;
     def.grain_count = k->mix.grain_count;
     def.container = k->container;
@@ -329,6 +324,7 @@ static ty_status recipe_make(const void* def, ty_workers* workers, ty_aggregate*
     kit* k = TY_ALLOC(kit, 1);
     k->recipe = &recipe;
     k->fill = &recipe.fill;
+    k->mechanics = ty_mechanics_of(&recipe);
     k->workers = workers;
     k->rng = ty_rng_make(recipe.seed, 0x626f6479, 0);
     status = sink ? kit_film(k, sink, error) : kit_make(k, out, error);

@@ -57,29 +57,42 @@ static char* mould_write(const kit* k)
                             (double)k->stood * 1e3);
 }
 
+static char* mechanics_write(const kit* k)
+{
+    const ty_mechanics* m = &k->mechanics;
+    char* state = m->given ? ty_string_format("\"wet_basis\": %.4f, \"cooked\": %.4f, \"swelling\": %.4f, ",
+                                              (double)m->state.wet_basis, (double)m->state.cooked, (double)m->swelling)
+                           : ty_string_format("%s", "");
+    char* text = ty_string_format("%s\"modulus_kPa\": %.4g, \"cohesion_N_m\": %.4g, \"adhesion_J_m2\": %.4g, ", state,
+                                  (double)m->modulus * 1e-3, (double)m->bridge.tension, (double)m->bridge.adhesion);
+    ty_free(state);
+    return text;
+}
+
 char* kit_metrics(const kit* k, const ty_pile_metrics* m)
 {
     static const char* const starts[] = {"inflate", "thesis", "lattice"};
     float repeat = ty_pile_repeat(ty_pile_bodies(k->pile), ty_pile_count(k->pile), k->mix.width);
     const ty_pile_metrics* settled = k->settled.count > 0 ? &k->settled : m;
-    char *drift = drift_write(k), *mould = mould_write(k);
+    char *drift = drift_write(k), *mould = mould_write(k), *mechanics = mechanics_write(k);
     char* text = ty_string_format(
         "{\"count\": %d, \"phi\": %.4f, \"phi_balls\": %.4f, \"contacts\": %.3f, \"loaded\": %.3f, \"neighbours\": "
         "%.3f, "
         "\"floating\": %d, \"overlap_max_percent\": %.4f, \"overlap_mean_percent\": %.5f, "
         "\"settled_overlap_max_percent\": %.4f, \"settled_overlap_mean_percent\": %.5f, "
-        "\"speed_rms_mm_s\": %.4f, \"speed_max_mm_s\": %.4f, %s%s\"rest\": %s, \"substeps\": %d, \"lost\": %d, "
+        "\"speed_rms_mm_s\": %.4f, \"speed_max_mm_s\": %.4f, %s%s%s\"rest\": %s, \"substeps\": %d, \"lost\": %d, "
         "\"replaced\": %d, \"level_mm\": %.3f, \"crown_mm\": %.3f, \"start\": \"%s\", \"removed\": %d, "
         "\"start_overlap_max_percent\": %.4f, \"start_overlap_mean_percent\": %.5f, \"start_repeat_percent\": %.3f, "
         "\"repeat_percent\": %.3f}",
         m->count, (double)m->phi, (double)m->phi_balls, (double)settled->contacts, (double)settled->loaded,
         (double)m->neighbours, m->floating, (double)m->overlap_max * 100.0, (double)m->overlap_mean * 100.0,
         (double)settled->overlap_max * 100.0, (double)settled->overlap_mean * 100.0, (double)m->speed_rms * 1e3,
-        (double)m->speed_max * 1e3, drift, mould, k->rest ? "true" : "false", m->substeps, k->lost, k->replaced,
-        (double)k->top.level * 1e3, (double)k->top.crown * 1e3, starts[k->recipe->fill.start], k->removed,
+        (double)m->speed_max * 1e3, drift, mould, mechanics, k->rest ? "true" : "false", m->substeps, k->lost,
+        k->replaced, (double)k->top.level * 1e3, (double)k->top.crown * 1e3, starts[k->recipe->fill.start], k->removed,
         (double)k->start.overlap_max * 100.0, (double)k->start.overlap_mean * 100.0, (double)k->start_repeat * 100.0,
         (double)repeat * 100.0);
     ty_free(drift);
     ty_free(mould);
+    ty_free(mechanics);
     return text;
 }

@@ -45,7 +45,14 @@ static ty_status shares_set(mixture_kind* kinds, const choice* c, ty_error* erro
     return TY_OK;
 }
 
-static ty_status kinds_complete(mixture* m, const choice* c, ty_error* error)
+static void sizes_swell(ty_element_def* def, float swelling)
+{
+    def->length *= swelling;
+    def->width *= swelling;
+    def->thickness *= swelling;
+}
+
+static ty_status kinds_complete(mixture* m, const choice* c, float swelling, ty_error* error)
 {
     mixture_kind* kinds = m->kinds + m->kind_count;
     ty_status status = shares_set(kinds, c, error);
@@ -56,6 +63,8 @@ static ty_status kinds_complete(mixture* m, const choice* c, ty_error* error)
         kinds[i].def = c->defs[i];
         kinds[i].layer = c->layer;
         status = ty_element_complete(&kinds[i].def, name, error);
+        if (kinds[i].def.kind == TY_ELEMENT_RICE)
+            sizes_swell(&kinds[i].def, swelling);
         kinds[i].first = m->grain_count;
         kinds[i].count = kinds[i].def.variants;
         m->grain_count += kinds[i].count;
@@ -113,11 +122,12 @@ ty_status mixture_init(const ty_aggregate_recipe* recipe, mixture* out, ty_error
         return ty_error_set(error, TY_BAD_INPUT, "%s: %lld kinds; at most %d mix",
                             recipe->layers.count > 0 ? "layers" : "elements", (long long)kinds, MIXTURE_KINDS);
     out->kinds = TY_ALLOC(mixture_kind, (int)kinds);
+    float swelling = ty_mechanics_of(recipe).swelling;
     ty_status status = TY_OK;
     for (int layer = 0; layer <= recipe->layers.count && status == TY_OK; layer++)
     {
         choice c = choice_of(recipe, layer);
-        status = kinds_complete(out, &c, error);
+        status = kinds_complete(out, &c, swelling, error);
     }
     if (status == TY_OK)
         status = grains_make(out, recipe->seed, error);

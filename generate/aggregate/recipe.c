@@ -22,9 +22,10 @@ ty_aggregate_recipe ty_aggregate_recipe_default(void)
                    .rate = pile.rate,
                    .polish = 100,
                    .solver = TY_SOLVER_IMPULSE,
-                   .modulus = 3e5f},
+                   .cohesion = -1.0f,
+                   .adhesion = -1.0f},
         .press = {.strain = 0.0f, .seconds = 0.6f, .from = TY_PRESS_ABOVE, .release = true},
-        .moisture = {.variation = 0.8f, .drying = 0.4f, .wet_basis = 0.62f},
+        .moisture = {.variation = 0.8f, .drying = 0.4f, .celsius = 10.0f, .cooked = -1.0f},
         .animate = {.frames = 0, .fps = 24.0f},
         .seed = {7},
     };

@@ -19,11 +19,13 @@ static const ty_param settle_rows[] = {
     FIELD("watch", TY_PARAM_FLOAT, "s", 0, 60, watch,
           "simulated time that it goes on at rest, to tell how far the elements move; the result is the same"),
     FIELD("cohesion", TY_PARAM_FLOAT, "N/m", -1, 1, cohesion,
-          "surface tension of the liquid between grains; below 0: water, as much as moisture.wet_basis gives"),
-    FIELD("adhesion", TY_PARAM_FLOAT, "J/m^2", 0, 10, adhesion, "work of adhesion of sticky grains, starch about 0.1"),
+          "surface tension of the liquid between grains; below 0: follows moisture, 0 where no state is given"),
+    FIELD("adhesion", TY_PARAM_FLOAT, "J/m^2", -1, 10, adhesion,
+          "work of adhesion of sticky grains; below 0: of starch, follows moisture, 0 where no state is given"),
     {"solver", TY_PARAM_ENUM, "", 0, 0, solvers, NULL, offsetof(OWNER, solver),
      "impulse: rigid elements that come to rest; xpbd: elastic ones that bend, run for max_seconds, and creep", false},
-    FIELD("modulus", TY_PARAM_FLOAT, "Pa", 1e3, 1e8, modulus, "Young's, of elastic elements: with xpbd, or pressed"),
+    FIELD("modulus", TY_PARAM_FLOAT, "Pa", 0, 1e8, modulus,
+          "Young's, of elastic elements: with xpbd, or pressed; 0: follows moisture, 3e5 where no state is given"),
     FIELD("rest", TY_PARAM_BOOL, "", 0, 0, rest,
           "with xpbd: at the end the elements are rigid, as they are bent, and come to rest by impulses"),
 };
@@ -70,14 +72,25 @@ static void wetness_set_default(void* def)
 static const ty_param wetness_rows[] = {
     FIELD("variation", TY_PARAM_FLOAT, "", 0, 1, variation, "share of chance in the attribute moisture (-1..1)"),
     FIELD("drying", TY_PARAM_FLOAT, "", 0, 1, drying, "how much drier the grains at the surface are"),
-    FIELD("wet_basis", TY_PARAM_FLOAT, "", 0.05, 1, wet_basis,
-          "water of the mass of wet grains: cooked 0.62; bridges hold them together from 0.35 on, up to 0.76"),
+    FIELD("wet_basis", TY_PARAM_FLOAT, "", 0, 1, wet_basis,
+          "water of the mass of wet grains, from 0.05: raw 0.145, soaked 0.31, cooked 0.62; 0: of soak and cooked"),
+    FIELD("soak", TY_PARAM_FLOAT, "", 0, 100000, soak, "minutes in water, before cooking"),
+    FIELD("celsius", TY_PARAM_FLOAT, "", 0, 60, celsius, "temperature of that water"),
+    FIELD("cooked", TY_PARAM_FLOAT, "", -1, 1, cooked,
+          "how far the starch is gelatinised; below 0: as wet_basis tells, after soaking alone not at all"),
+    FIELD("swelling", TY_PARAM_FLOAT, "", 0, 2, swelling,
+          "size of rice against its sizes, which are those at 0.62, from 0.5; 0: of the state"),
 };
 #undef OWNER
 
-const ty_param_table recipe_moisture = {"aggregate.moisture",   "The attribute moisture of the grains.",
-                                        sizeof(ty_wetness_def), wetness_set_default,
-                                        wetness_rows,           TY_PARAM_COUNT(wetness_rows)};
+const ty_param_table recipe_moisture = {"aggregate.moisture",
+                                        "The state of the grains: any of wet_basis, soak and cooked gives one. "
+                                        "Cohesion, adhesion, stiffness and swelling follow "
+                                        "it. Variation and drying are those of the attribute moisture.",
+                                        sizeof(ty_wetness_def),
+                                        wetness_set_default,
+                                        wetness_rows,
+                                        TY_PARAM_COUNT(wetness_rows)};
 
 static void animate_set_default(void* def)
 {

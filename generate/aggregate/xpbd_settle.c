@@ -87,8 +87,8 @@ ty_status kit_soften(kit* k, ty_pile_metrics* metrics, ty_error* error)
     ty_xpbd_def def = ty_xpbd_def_default();
     def.rate = settle->rate;
     def.friction = settle->friction;
-    def.modulus = settle->modulus;
-    def.bridge = kit_bridge(k->recipe);
+    def.modulus = k->mechanics.modulus;
+    def.bridge = k->mechanics.bridge;
     def.container = k->container;
     ty_xpbd* x = ty_xpbd_create(&def);
     for (int i = 0; i < ty_pile_count(k->pile); i++)

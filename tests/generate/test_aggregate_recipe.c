@@ -138,7 +138,8 @@ static void test_bowl(void** state)
 {
     (void)state;
     ty_aggregate_recipe r = small_bowl();
-    r.moisture = (ty_wetness_def){.variation = 0.5f, .drying = 0.6f};
+    r.moisture.variation = 0.5f;
+    r.moisture.drying = 0.6f;
     ty_aggregate* a = made(&r, NULL);
     assert_int_equal(a->instance_count, 240);
     assert_int_equal(a->prototype_count, 4);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The recipe of an aggregate: which grains, in what, how many, how they settle. `kind: aggregate`.
 #pragma once
+#include <tsuya/base/moisture.h>
 #include <tsuya/generate/asset.h>
 #include <tsuya/generate/pile.h>
 
@@ -69,10 +70,10 @@ typedef struct ty_settle_def
     float rate;        // substeps per second, 1000..20000
     int polish;        // sweeps, 0..5000
     float watch;       // s that a pile at rest goes on, to measure how far it moves, 0..60
-    float cohesion;    // N/m, tension of the liquid between grains; < 0: water, as much as moisture.wet_basis gives
-    float adhesion;    // J/m^2, work of adhesion of sticky surfaces, 0..10
+    float cohesion;    // N/m, tension of the liquid between grains; < 0: follows the moisture
+    float adhesion;    // J/m^2, work of adhesion of sticky surfaces, 0..10; < 0: follows the moisture
     int solver;        // ty_solver
-    float modulus;     // Pa, Young's of an elastic element, 1e3..1e8
+    float modulus;     // Pa, Young's of an elastic element, 1e3..1e8; 0: follows the moisture
     bool rest;         // elastic elements end as rigid ones, bent as they are, that come to rest
 } ty_settle_def;
 
@@ -97,8 +98,22 @@ typedef struct ty_wetness_def
 {
     float variation; // share of chance, 0..1
     float drying;    // how much drier grains at the surface are, 0..1
-    float wet_basis; // kg of water a kg of wet grains, 0.05..1, for cohesion
+    float wet_basis; // kg of water a kg of wet grains, 0.05..1; 0: follows soak and cooked
+    float soak;      // minutes, >= 0
+    float celsius;   // of the water for soaking, 0..60
+    float cooked;    // 0..1; < 0: not said, as in ty_moisture_def
+    float swelling;  // size of rice against its size when cooked, 0.5..2; 0: follows the state
 } ty_wetness_def;
+
+// What follows from the state of moisture, and from what the recipe gives in its place.
+typedef struct ty_mechanics
+{
+    bool given;           // there is a state: one of wet_basis, soak and cooked
+    ty_moisture state;    // if given
+    ty_bridge_def bridge; // of water, and of starch
+    float modulus;        // Pa
+    float swelling;       // of the lengths of rice
+} ty_mechanics;
 
 // A film of the pile as it settles: the same bodies in every frame, those that fall over a rim too.
 typedef struct ty_animate_def
@@ -124,6 +139,8 @@ typedef struct ty_aggregate_recipe
 ty_aggregate_recipe ty_aggregate_recipe_default(void); // 2,000 grains of cooked japonica rice in the default bowl
 const ty_param_table* ty_aggregate_recipe_params(void);
 const ty_param_table* ty_layer_params(void);
+ty_mechanics ty_mechanics_of(const ty_aggregate_recipe* recipe);
+TY_CHECKED ty_status ty_mechanics_check(const ty_aggregate_recipe* recipe, ty_error* error);
 // def is a ty_aggregate_recipe; on failure *out is NULL, else as ty_generator's make.
 TY_CHECKED ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate** out, ty_error* error);
 // Frame by frame instead: the first is the fill before it moves. recipe.animate.frames is at least 1; nothing is

@@ -18,6 +18,8 @@ ty_bridge_def ty_bridge_def_default(void); // dry, cooked rice
 // Of the grains' water, kg of water a kg in all: none up to .35, where all of it is within them; falls to none from
 // three quarters of saturation on, as bridges flow together (Rungjiratananon et al. 2008).
 ty_bridge_def ty_bridge_of_moisture(float wet_basis);
+// How much of what can hold wet grains together does so, 0..1: rises and falls in the same bounds.
+float ty_bridge_strength(float wet_basis);
 // N at a gap of two balls with the harmonic mean radius 2 ab / (a + b) and the smaller radius given, metres (Willett
 // et al. 2000), without regard to its rupture at (1 + angle / 2) V^(1/3).
 float ty_bridge_pull(const ty_bridge_def* def, float radius, float mean_radius, float gap);
