@@ -192,7 +192,7 @@ static void attach(ty_world* world, const ty_trace_object* object, RTCGeometry g
     rtcAttachGeometryByID(world->scene, geometry, id);
     rtcReleaseGeometry(geometry);
     world->has_rest = true;
-    world->filters_rest = world->filters_rest || object->closed_subsurface;
+    world->filters_rest = world->filters_rest || object->one_sided;
 }
 
 // Geometry ids: the instance's among all.

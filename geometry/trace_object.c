@@ -57,7 +57,7 @@ static ty_status append(ty_world* world, ty_trace_object* added, ty_motion motio
         !added->drifts && added->step_count == 1 && memcmp(&added->steps[0], &identity, sizeof identity) == 0;
     added->index = world->object_count;
     added->first = world->instance_count;
-    added->closed_subsurface = flags.closed_subsurface;
+    added->one_sided = flags.one_sided;
     added->mask = flags.mask;
     world->instance_count += added->count;
     world->objects[world->object_count] = *added;

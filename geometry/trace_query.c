@@ -20,6 +20,13 @@ static void find_object(const ty_world* world, uint32_t outer, uint32_t inner, u
     *instance = is_mesh ? 0 : inner;
 }
 
+// A triangle's own slot counts: an aggregate may hold translucent bodies beside clear ones, whose backs must be met.
+static bool is_one_sided(const ty_world* world, uint32_t object, uint32_t instance, uint32_t triangle)
+{
+    const uint16_t* slots = ty_world_mesh(world, object, instance)->slots;
+    return (world->objects[object].one_sided & ty_slot_bit(slots ? slots[triangle] : 0)) != 0;
+}
+
 void ty_trace_filter(const struct RTCFilterFunctionNArguments* args)
 {
     if (!args->valid[0])
@@ -36,13 +43,14 @@ void ty_trace_filter(const struct RTCFilterFunctionNArguments* args)
     // In the prototype's space: the sign of n.d is that of the world's, for any map, since n goes by the inverse
     // transpose and stays outward under a mirror.
     float facing = hit->Ng_x * local->dir_x + hit->Ng_y * local->dir_y + hit->Ng_z * local->dir_z;
-    if ((ray->flags & TY_RAY_FRONT_ONLY) && context->world->objects[object].closed_subsurface && facing > 0.0f)
+    if ((ray->flags & TY_RAY_FRONT_ONLY) && facing > 0.0f &&
+        is_one_sided(context->world, object, instance, hit->primID))
         args->valid[0] = 0;
 }
 
 RTCFilterFunctionN ty_trace_needed_filter(const ty_trace_object* object, const ty_ray* ray, uint32_t instance)
 {
-    bool front_only = (ray->flags & TY_RAY_FRONT_ONLY) && object->closed_subsurface;
+    bool front_only = (ray->flags & TY_RAY_FRONT_ONLY) && object->one_sided;
     bool skip = ray->skip_object == object->index && ray->skip_instance == instance;
     return front_only || skip ? ty_trace_filter : NULL;
 }

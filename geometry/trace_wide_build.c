@@ -405,7 +405,7 @@ static void measure(builder* b, const ty_trace_object* object, uint32_t* next)
 {
     fit_prototypes(b->world, object);
     b->wide->common_mask &= object->mask;
-    b->wide->has_subsurface = b->wide->has_subsurface || object->closed_subsurface;
+    b->wide->has_subsurface = b->wide->has_subsurface || object->one_sided;
     for (uint32_t i = 0; i < object->count; i++)
     {
         if (object->drifts && object->drifts[i])

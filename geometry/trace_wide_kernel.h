@@ -83,7 +83,7 @@ static inline bool may_visit(const ty_world* world, const ty_trace_wide* wide, c
     const ty_trace_object* object = ty_trace_object_of(world, instance);
     if (!(q->ray->mask & object->mask))
         return false;
-    if (skip || (one_sided && object->closed_subsurface))
+    if (skip || (one_sided && object->one_sided))
     {
         context->object = object->index;
         context->instance = instance - object->first;

@@ -34,8 +34,8 @@ typedef struct ty_trace_object
     bool* drifts;                  // [count] the instance moves by itself; owned; NULL = none does
     uint32_t* drifting;            // [drift_count] those that do; owned
     uint32_t drift_count;
-    int drift_steps; // between which their boxes move linearly
-    bool closed_subsurface;
+    int drift_steps;    // between which their boxes move linearly
+    uint64_t one_sided; // slots, as in ty_object_flags
     uint32_t mask;
     ty_trace_wide* wide; // a moving aggregate's instances in its own space; owned
 } ty_trace_object;

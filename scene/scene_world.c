@@ -150,17 +150,20 @@ static ty_object_flags object_flags(const ty_loader* loader, const ty_scene_obje
 {
     ty_object_flags flags = {0}; // the mask is looked at again for every frame
     bool scatters = false;
+    uint64_t both = 0; // slots that are met from either side
     for (uint32_t k = 0; k < ty_scene_material_count(object); ++k)
     {
         const ty_material* material = loader->scene->materials[ty_scene_material_at(object, k)];
-        flags.closed_subsurface |= ty_material_is_subsurface(material);
+        *(ty_material_is_subsurface(material) ? &flags.one_sided : &both) |= ty_slot_bit(k);
         scatters = scatters || (ty_material_traits(material) & TY_TRAIT_SCATTERING);
     }
+    flags.one_sided &= ~both; // the last bit stands for many
+    bool is_body = flags.one_sided || scatters;
     meshes all = meshes_of(asset);
     for (int i = 0; i < all.count; ++i)
     {
-        if (flags.closed_subsurface || scatters)
-            flags.closed_subsurface = is_closed(all.items[i], asset->name) && flags.closed_subsurface;
+        if (is_body && !is_closed(all.items[i], asset->name))
+            flags.one_sided = 0;
         warn_untextured(loader, object, all.items[i], asset->name);
     }
     return flags;

@@ -159,8 +159,8 @@ static void paths_agree(void** state)
             motion = (ty_motion){.steps = tumble, .step_count = 3, .open = -0.03f, .close = 0.04f};
         ty_world* world[2];
         for (int path = 0; path < 2; path++)
-            world[path] = world_of((ty_trace_path)path, heap, motion,
-                                   (ty_object_flags){.mask = TY_MASK_OPAQUE, .closed_subsurface = true});
+            world[path] =
+                world_of((ty_trace_path)path, heap, motion, (ty_object_flags){.mask = TY_MASK_OPAQUE, .one_sided = 1});
         ty_rng rng = ty_rng_make((ty_seed){32}, 0, 0);
         int hits = 0, differing = 0;
         for (int i = 0; i < 20000; i++)

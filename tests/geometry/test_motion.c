@@ -150,7 +150,7 @@ static void paths_agree(void** state)
     for (int path = 0; path < 2; path++)
     {
         world[path] = new_world((ty_trace_path)path);
-        ty_object_flags flags = {.mask = TY_MASK_OPAQUE, .closed_subsurface = true};
+        ty_object_flags flags = {.mask = TY_MASK_OPAQUE, .one_sided = ~0ull};
         ty_motion motion = {.steps = tumble, .step_count = 3};
         assert_int_equal(
             ty_world_add_aggregate(world[path], rest, ty_motion_at_rest(&identity), flags, &object, &error), TY_OK);

@@ -14,7 +14,7 @@
 #define RAYS 20000
 
 static const ty_object_flags opaque = {.mask = TY_MASK_OPAQUE};
-static const ty_object_flags subsurface = {.closed_subsurface = true, .mask = TY_MASK_OPAQUE};
+static const ty_object_flags subsurface = {.one_sided = ~0ull, .mask = TY_MASK_OPAQUE};
 
 // Spheres and non-convex tori, stretched and mirrored, overlapping in a cube of 2 x 2 x 2.
 static ty_aggregate* make_heap(uint64_t key)
@@ -409,6 +409,47 @@ static void masks_hide_instances(void** state)
     }
 }
 
+// Of an aggregate of two materials only the bodies of the one-sided one let a ray out unseen.
+static void one_sided_slots(void** state)
+{
+    (void)state;
+    const uint32_t slot_of[2] = {70, 2}; // the first is among those that share a bit
+    ty_aggregate* heap = ty_aggregate_create(2, 2);
+    for (uint32_t k = 0; k < 2; k++)
+    {
+        ty_mesh* mesh = heap->prototypes[k] = make_sphere(24, 15);
+        mesh->slots = TY_ALLOC(uint16_t, mesh->triangle_count);
+        for (uint32_t i = 0; i < mesh->triangle_count; i++)
+            mesh->slots[i] = (uint16_t)slot_of[k];
+        heap->prototype_index[k] = k;
+        heap->transforms[k] = ty_affine_identity();
+        heap->transforms[k].t.x = 3.0f * (float)k;
+    }
+    ty_affine identity = ty_affine_identity();
+    for (int path = 0; path < 2; path++)
+        for (uint32_t one = 0; one < 2; one++)
+        {
+            ty_world_def def = {.path = (ty_trace_path)path};
+            ty_object_flags flags = {.one_sided = ty_slot_bit(slot_of[one]), .mask = TY_MASK_OPAQUE};
+            ty_error error;
+            ty_world* world;
+            uint32_t object;
+            assert_int_equal(ty_world_create(&def, &world, &error), TY_OK);
+            assert_int_equal(ty_world_add_aggregate(world, heap, ty_motion_at_rest(&identity), flags, &object, &error),
+                             TY_OK);
+            assert_int_equal(ty_world_commit(world, &error), TY_OK);
+            for (uint32_t k = 0; k < 2; k++)
+            {
+                ty_ray ray = ty_ray_make(heap->transforms[k].t, (ty_vec3){0, 1, 0}, TY_FLOAT_MAX);
+                ray.flags = TY_RAY_FRONT_ONLY;
+                ty_hit hit;
+                assert_int_equal(ty_world_intersect(world, &ray, &hit), k != one);
+            }
+            ty_world_destroy(world);
+        }
+    ty_aggregate_destroy(heap);
+}
+
 // Meshes that stand where they are and are no instances: found, skipped, masked and seen from outside only like those.
 static void meshes_are_like_instances(void** state)
 {
@@ -417,7 +458,7 @@ static void meshes_are_like_instances(void** state)
     ty_affine small = ty_affine_from_trs((ty_vec3){0.5f, 0.2f, 0.1f}, ty_quat_identity(), (ty_vec3){0.7f, 0.6f, 0.5f});
     ty_mesh_transform(sphere, &small);
     ty_affine identity = ty_affine_identity();
-    ty_object_flags unlit = {.closed_subsurface = true, .mask = TY_MASK_OPAQUE & ~TY_MASK_SHADOW};
+    ty_object_flags unlit = {.one_sided = ~0ull, .mask = TY_MASK_OPAQUE & ~TY_MASK_SHADOW};
     ty_world* world[2];
     for (int path = 0; path < 2; path++)
     {
@@ -642,6 +683,7 @@ int main(void)
         cmocka_unit_test(fast_equals_reference_with_skips),
         cmocka_unit_test(skip_passes_the_instance),
         cmocka_unit_test(one_sided_objects),
+        cmocka_unit_test(one_sided_slots),
         cmocka_unit_test(two_builds_are_one),
         cmocka_unit_test(far_from_the_origin),
         cmocka_unit_test(fast_path_cuts_nothing),

@@ -12,8 +12,7 @@ typedef struct ty_world ty_world; // opaque
 typedef enum ty_ray_flags
 {
     TY_RAY_PLAIN = 0,
-    TY_RAY_FRONT_ONLY =
-        1, // objects marked closed_subsurface are seen from outside only: back-face hits are passed through
+    TY_RAY_FRONT_ONLY = 1, // surfaces that are one_sided are seen from outside only: back-face hits are passed through
 } ty_ray_flags;
 
 // Who sees what: a ray meets an object only if their masks share a bit. A ray carries the bits of its own kind, an
@@ -82,9 +81,15 @@ void ty_world_destroy(ty_world* world); // NULL is allowed
 
 typedef struct ty_object_flags
 {
-    bool closed_subsurface; // honours TY_RAY_FRONT_ONLY
-    uint32_t mask;          // ty_mask: the rays that may meet it
+    uint64_t one_sided; // ty_slot_bit of each material slot that honours TY_RAY_FRONT_ONLY
+    uint32_t mask;      // ty_mask: the rays that may meet it
 } ty_object_flags;
+
+// The last bit stands for all slots from 63 on.
+static inline uint64_t ty_slot_bit(uint32_t slot)
+{
+    return 1ull << (slot < 63 ? slot : 63);
+}
 
 // Where an object stands while the shutter is open: maps at even steps, the first at time 0 and the last at time 1;
 // one step = at rest. Between steps the rotation is interpolated on the sphere and the rest linearly, in substeps of at

@@ -172,7 +172,7 @@ TY_CHECKED ty_status ty_material_create_cdrf(const ty_cdrf_def* def, ty_material
 TY_CHECKED ty_status ty_material_create_walk(const ty_walk_def* def, ty_material** out, ty_error* error);
 void ty_material_destroy(ty_material* material); // NULL is allowed
 
-bool ty_material_is_subsurface(const ty_material* material); // cdrf, walk: objects get closed_subsurface
+bool ty_material_is_subsurface(const ty_material* material); // cdrf, walk: closed surfaces of it are one-sided
 bool ty_material_needs_depth(const ty_material* material);   // its prototypes need a depth field
 bool ty_material_is_emissive(const ty_material* material);
 
