@@ -14,7 +14,7 @@ ty_element_def ty_element_def_default(void)
                             .notch = 0.15f,
                             .divisions = 9,
                             .fit = 0.03f,
-                            .roe = {.lean = TY_PI / 4.0f, .press = 0.012f}};
+                            .roe = {.lean = TY_PI / 4.0f, .buoyancy = 110.0f, .viscosity = 0.02f, .press = 0.012f}};
 }
 
 float ty_element_bell(ty_rng* rng)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mixtures: kinds by ratio, drawn body by body.
 #include "mixture.h"
-#include "roe.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -138,18 +137,6 @@ ty_status mixture_init(const ty_aggregate_recipe* recipe, mixture* out, ty_error
     return status;
 }
 
-bool mixture_holds_roe(const ty_aggregate_recipe* recipe)
-{
-    bool holds = false;
-    for (int layer = 0; layer <= recipe->layers.count; layer++)
-    {
-        choice c = choice_of(recipe, layer);
-        for (int i = 0; i < c.count; i++)
-            holds |= c.defs[i].kind == TY_ELEMENT_ROE;
-    }
-    return holds;
-}
-
 void mixture_term(mixture* m)
 {
     for (int i = 0; m->grains && i < m->grain_count; i++)
@@ -185,7 +172,7 @@ void mixture_draw(const mixture* m, ty_rng* rng, ty_body* body)
 
 // --- writing ---
 
-static bool is_roe(const mixture* m, uint32_t grain)
+bool mixture_is_roe(const mixture* m, uint32_t grain)
 {
     return m->kinds[m->kind_of[grain]].def.kind == TY_ELEMENT_ROE;
 }
@@ -219,34 +206,32 @@ static void prototypes_write(mixture* m, int* further, ty_aggregate* out)
     }
 }
 
-static void body_write(const mixture* m, const int* further, ty_seed seed, const ty_body* b, uint32_t i,
-                       const uint32_t at[TY_ROE_BODIES], ty_aggregate* out, uint32_t* owners)
+// Its instances, one or an egg's three.
+static int body_maps(const mixture* m, ty_seed seed, const ty_body* b, uint32_t i, const ty_yolk* yolk,
+                     ty_affine maps[TY_ROE_BODIES])
 {
-    int kind = m->kind_of[b->grain], parts = 1;
-    ty_affine maps[TY_ROE_BODIES];
-    if (is_roe(m, b->grain))
+    if (mixture_is_roe(m, b->grain))
     {
-        ty_roe_place(&m->kinds[kind].def, seed, b, i, maps);
-        parts = TY_ROE_BODIES;
+        ty_roe_place(&m->kinds[m->kind_of[b->grain]].def, seed, b, i, yolk, maps);
+        return TY_ROE_BODIES;
     }
-    else
-        maps[0] = ty_affine_from_trs(b->position, b->rotation, ty_vec3_make(b->scale, b->scale, b->scale));
-    for (int k = 0; k < parts; k++)
-    {
-        out->transforms[at[k]] = maps[k];
-        out->prototype_index[at[k]] = k == 0 ? b->grain : (uint32_t)(further[kind] + k - 1);
-        out->ids[at[k]] = at[k];
-        owners[at[k]] = i;
-    }
+    maps[0] = ty_affine_from_trs(b->position, b->rotation, ty_vec3_make(b->scale, b->scale, b->scale));
+    return 1;
+}
+
+static uint32_t count_eggs(const mixture* m, const ty_body* bodies, uint32_t count)
+{
+    uint32_t eggs = 0;
+    for (uint32_t i = 0; i < count; i++)
+        eggs += mixture_is_roe(m, bodies[i].grain);
+    return eggs;
 }
 
 ty_aggregate* mixture_write(mixture* m, ty_seed seed, const ty_body* bodies, const ty_affine* frames, uint32_t count,
                             uint32_t** owners)
 {
-    uint32_t eggs = 0, egg = 0;
+    uint32_t eggs = count_eggs(m, bodies, count), egg = 0;
     int prototypes = m->grain_count, further[MIXTURE_KINDS];
-    for (uint32_t i = 0; i < count; i++)
-        eggs += is_roe(m, bodies[i].grain);
     for (int i = 0; i < m->kind_count; i++)
         prototypes += m->kinds[i].def.kind == TY_ELEMENT_ROE ? TY_ROE_BODIES - 1 : 0;
     uint32_t all = count + (TY_ROE_BODIES - 1) * eggs;
@@ -263,10 +248,42 @@ ty_aggregate* mixture_write(mixture* m, ty_seed seed, const ty_body* bodies, con
     for (uint32_t i = 0; i < count; i++)
     {
         const uint32_t at[TY_ROE_BODIES] = {i, count + egg, count + eggs + egg};
-        body_write(m, further, seed, &bodies[i], i, at, out, *owners);
-        if (frames && !is_roe(m, bodies[i].grain))
+        ty_affine maps[TY_ROE_BODIES];
+        int parts = body_maps(m, seed, &bodies[i], i, NULL, maps);
+        for (int k = 0; k < parts; k++)
+        {
+            out->transforms[at[k]] = maps[k];
+            out->prototype_index[at[k]] =
+                k == 0 ? bodies[i].grain : (uint32_t)(further[m->kind_of[bodies[i].grain]] + k - 1);
+            out->ids[at[k]] = at[k];
+            (*owners)[at[k]] = i;
+        }
+        if (frames && parts == 1)
             out->transforms[i] = frames[i];
-        egg += is_roe(m, bodies[i].grain);
+        egg += parts > 1;
     }
     return out;
+}
+
+// The shells of eggs are shown upright, whatever way they have rolled.
+void mixture_move(const mixture* m, ty_seed seed, const ty_body* bodies, const ty_yolk* yolks, uint32_t count,
+                  ty_aggregate* out)
+{
+    ty_vec3 *velocities = ty_aggregate_add_velocities(out), *spins = ty_aggregate_add_spins(out);
+    uint32_t eggs = count_eggs(m, bodies, count), egg = 0;
+    for (uint32_t i = 0; i < count; i++)
+    {
+        const uint32_t at[TY_ROE_BODIES] = {i, count + egg, count + eggs + egg};
+        ty_affine maps[TY_ROE_BODIES];
+        int parts = body_maps(m, seed, &bodies[i], i, &yolks[i], maps);
+        for (int k = 0; k < parts; k++)
+        {
+            out->transforms[at[k]] = maps[k];
+            velocities[at[k]] = bodies[i].velocity;
+            spins[at[k]] = parts > 1 ? (ty_vec3){0, 0, 0} : bodies[i].spin;
+        }
+        if (parts > 1)
+            velocities[at[2]] = ty_add(bodies[i].velocity, yolks[i].speed);
+        egg += parts > 1;
+    }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The elements of a recipe, in each layer one kind or several by ratio, each in its variants.
 #pragma once
+#include "roe.h"
 #include <tsuya/generate/aggregate_recipe.h>
 
 enum
@@ -33,7 +34,6 @@ typedef struct mixture
 // Checks and makes all elements. On failure *out is zeroed; the error names the element.
 TY_CHECKED ty_status mixture_init(const ty_aggregate_recipe* recipe, mixture* out, ty_error* error);
 void mixture_term(mixture* m);
-bool mixture_holds_roe(const ty_aggregate_recipe* recipe);
 void mixture_select(mixture* m, int layer); // from now on draws are of that layer; it is 0 at first
 
 // Which grain a body is, and its own size: chance by shares. Equal draws whatever the kinds are when there is one.
@@ -44,3 +44,7 @@ void mixture_draw(const mixture* m, ty_rng* rng, ty_body* body);
 // (freed by the caller): [instance_count] the body that each is of. NULL: no memory.
 TY_CHECKED ty_aggregate* mixture_write(mixture* m, ty_seed seed, const ty_body* bodies, const ty_affine* frames,
                                        uint32_t count, uint32_t** owners);
+bool mixture_is_roe(const mixture* m, uint32_t grain);
+// The same instances at another moment: transforms, velocities and spins. yolks: [count], of eggs.
+void mixture_move(const mixture* m, ty_seed seed, const ty_body* bodies, const ty_yolk* yolks, uint32_t count,
+                  ty_aggregate* out);

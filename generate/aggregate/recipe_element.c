@@ -24,6 +24,11 @@ static const ty_param roe_rows[] = {
           "thickness, a thousandth to a tenth of the diameter; 0 = of the preset"),
     FIELD("yolk", TY_PARAM_FLOAT, "", 0, 0.5, yolk, "its share of what is within the membrane; 0 = of the preset"),
     FIELD("lean", TY_PARAM_FLOAT, "deg", 0, 180, lean, "largest angle of the yolk off the top, where it floats"),
+    FIELD(
+        "buoyancy", TY_PARAM_FLOAT, "kg/m^3", -500, 500, buoyancy,
+        "by which the white is denser than the yolk; below 0 the yolk sinks: in films, where it starts in the middle"),
+    FIELD("viscosity", TY_PARAM_FLOAT, "Pa s", 1e-4, 1e3, viscosity,
+          "of the white, through which the yolk rises in films: .001 is water"),
     FIELD("press", TY_PARAM_FLOAT, "", 0, 0.05, press,
           "how much farther eggs reach than they were packed, so that they meet in small discs"),
 };

@@ -80,33 +80,95 @@ static ty_affine egg_frame(const ty_element_def* def, const ty_body* body, ty_rn
     return ty_affine_from_trs(body->position, ty_quat_multiply(leaning, upright), scale);
 }
 
-static ty_affine shrunk(const ty_affine* frame, float share, float lift)
-{
-    ty_affine m = *frame;
-    m.t = ty_mad(frame->t, frame->y, lift);
-    m.x = ty_mul(frame->x, share);
-    m.y = ty_mul(frame->y, share);
-    m.z = ty_mul(frame->z, share);
-    return m;
-}
-
 void ty_roe_prototypes(const ty_mesh* membrane, ty_mesh* out[2])
 {
     out[0] = body_mesh(membrane, "white");
     out[1] = body_mesh(membrane, "yolk");
 }
 
-// The membrane has one thickness whatever the size of the egg. The yolk is the lipid's ball (radius r_i L^(1/3)) and
-// floats against the membrane but for a hair, so that the two meshes do not cut one another.
-void ty_roe_place(const ty_element_def* def, ty_seed seed, const ty_body* body, uint32_t index,
+// --- where the three bodies are ---
+
+// So far from the membrane does a floating yolk stay, of the white's radius: the two meshes do not cut one another.
+#define HAIR 0.006f
+
+typedef struct egg
+{
+    ty_affine frame; // the membrane's
+    float size;      // of an egg of mean size
+    float white;     // radius against the membrane's, which has one thickness whatever the size of the egg
+    float yolk;      // radius against the white's: the lipid's ball, r_i L^(1/3)
+    float room;      // m, between the middles of the egg and of a yolk that floats
+} egg;
+
+static egg egg_of(const ty_element_def* def, ty_seed seed, const ty_body* body, uint32_t index)
+{
+    ty_rng rng = ty_rng_make(seed, 0x726f65, index);
+    float r = 0.5f * def->roe.diameter;
+    egg e = {.frame = egg_frame(def, body, &rng),
+             .size = body->scale * (1.0f + def->roe.press),
+             .white = 1.0f - def->roe.membrane / (r * body->scale),
+             .yolk = ty_exp(ty_ln(def->roe.yolk) / 3.0f)};
+    e.room = e.white * (1.0f - e.yolk - HAIR) * r * e.size;
+    return e;
+}
+
+static ty_affine shrunk(const ty_affine* frame, float share, ty_vec3 shift)
+{
+    return (ty_affine){ty_mul(frame->x, share), ty_mul(frame->y, share), ty_mul(frame->z, share),
+                       ty_add(frame->t, shift)};
+}
+
+// From a ball into the egg's shape: along each of its axes as much as that is longer.
+static ty_vec3 shaped(const egg* e, ty_vec3 at)
+{
+    const ty_vec3 axes[] = {e->frame.x, e->frame.y, e->frame.z};
+    ty_vec3 sum = {0, 0, 0};
+    for (int i = 0; i < 3; i++)
+        sum = ty_mad(sum, axes[i], ty_dot(at, axes[i]) / (ty_length(axes[i]) * e->size));
+    return sum;
+}
+
+void ty_roe_place(const ty_element_def* def, ty_seed seed, const ty_body* body, uint32_t index, const ty_yolk* yolk,
                   ty_affine out[TY_ROE_BODIES])
 {
-    const float hair = 0.006f;
-    ty_rng rng = ty_rng_make(seed, 0x726f65, index);
-    ty_affine frame = egg_frame(def, body, &rng);
-    float r = 0.5f * def->roe.diameter, white = 1.0f - def->roe.membrane / (r * body->scale);
-    float yolk = ty_exp(ty_ln(def->roe.yolk) / 3.0f);
-    out[0] = frame;
-    out[1] = shrunk(&frame, white, 0.0f);
-    out[2] = shrunk(&frame, white * yolk, white * (1.0f - yolk - hair) * r);
+    egg e = egg_of(def, seed, body, index);
+    out[0] = e.frame;
+    out[1] = shrunk(&e.frame, e.white, (ty_vec3){0, 0, 0});
+    ty_vec3 shift = yolk ? shaped(&e, yolk->at) : ty_mul(e.frame.y, e.room / e.size);
+    out[2] = shrunk(&e.frame, e.white * e.yolk, shift);
+}
+
+// --- how a yolk floats ---
+
+// Stokes' drag of a ball in the middle of a spherical vessel, against that without walls; share of the radii (J. Happel
+// & H. Brenner 1983, "Low Reynolds number hydrodynamics", section 4-22).
+static float confined(float share)
+{
+    float cube = share * share * share, fifth = cube * share * share;
+    return (1.0f - fifth) / (1.0f - 2.25f * share + 2.5f * cube - 2.25f * fifth + cube * cube);
+}
+
+// In the egg's frame of reference both gravity and its own acceleration pull the denser liquid past the yolk:
+// (m + m'/2) dw/dt = (m' - m) (dU/dt - g) - D w, with the liquid's mass m' in place of the yolk, half of which goes
+// along with it. The white does not turn with its egg.
+void ty_roe_float(const ty_element_def* def, ty_seed seed, const ty_body* body, uint32_t index, ty_vec3 gained,
+                  float gravity, float seconds, ty_yolk* yolk)
+{
+    const float white_density = 1050.0f;
+    egg e = egg_of(def, seed, body, index);
+    float radius = e.yolk * e.white * 0.5f * def->roe.diameter * e.size,
+          volume = 4.0f / 3.0f * TY_PI * ty_sqr(radius) * radius;
+    float inertia = volume * (1.5f * white_density - def->roe.buoyancy);
+    float drag = 6.0f * TY_PI * def->roe.viscosity * radius * confined(e.yolk);
+    ty_vec3 up = ty_normalize(e.frame.y); // by lean off the vertical: yolks hang on their germs
+    ty_vec3 pull = ty_mad(gained, up, gravity * seconds);
+    yolk->speed = ty_mul(ty_mad(yolk->speed, pull, volume * def->roe.buoyancy / inertia),
+                         1.0f / (1.0f + seconds * drag / inertia));
+    yolk->at = ty_mad(yolk->at, yolk->speed, seconds);
+    float off = ty_length(yolk->at);
+    if (off <= e.room)
+        return;
+    ty_vec3 out = ty_mul(yolk->at, 1.0f / off);
+    yolk->at = ty_mul(out, e.room);
+    yolk->speed = ty_mad(yolk->speed, out, -ty_max(ty_dot(yolk->speed, out), 0.0f));
 }

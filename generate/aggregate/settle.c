@@ -214,11 +214,21 @@ static void pair_relax(ty_pile* pile, pair* p)
 
 // --- the substep ---
 
+static float gravity_share(const ty_pile* pile)
+{
+    return ty_min(1.0f, pile->time / GRAVITY_RAMP);
+}
+
+ty_vec3 ty_pile_gravity(const ty_pile* pile)
+{
+    return ty_mul(pile->def.gravity, gravity_share(pile));
+}
+
 static void bodies_accelerate(void* context, int64_t begin, int64_t end, int worker)
 {
     (void)worker;
     ty_pile* pile = context;
-    ty_vec3 step = ty_mul(pile->def.gravity, ty_min(1.0f, pile->time / GRAVITY_RAMP) / pile->def.rate);
+    ty_vec3 step = ty_mul(pile->def.gravity, gravity_share(pile) / pile->def.rate);
     for (int64_t i = begin; i < end; i++)
     {
         motion* m = &pile->motions[i];

@@ -147,9 +147,6 @@ static void refused(void** state)
     assert_int_equal(ty_aggregate_film(&recipe, NULL, &sink, &error), TY_BAD_INPUT);
     assert_non_null(strstr(error.text, "animate.frames"));
     recipe = recipe_make();
-    recipe.element.kind = TY_ELEMENT_ROE;
-    assert_int_equal(ty_aggregate_film(&recipe, NULL, &sink, &error), TY_BAD_INPUT);
-    recipe = recipe_make();
     recipe.settle.solver = TY_SOLVER_XPBD;
     assert_int_equal(ty_aggregate_film(&recipe, NULL, &sink, &error), TY_BAD_INPUT);
     assert_non_null(strstr(error.text, "solver"));

@@ -51,11 +51,13 @@ typedef enum ty_roe_preset
 // An egg. Sizes of 0 are those of the preset; ty_roe_complete puts them in.
 typedef struct ty_roe_def
 {
-    int preset;     // ty_roe_preset
-    float diameter; // m, mean
-    float membrane; // m, its thickness
-    float yolk;     // share of the volume within the membrane, 0..0.5
-    float lean;     // rad, largest angle of the yolk off the top, 0..pi
+    int preset;      // ty_roe_preset
+    float diameter;  // m, mean
+    float membrane;  // m, its thickness
+    float yolk;      // share of the volume within the membrane, 0..0.5
+    float lean;      // rad, largest angle of the yolk off the top, 0..pi
+    float buoyancy;  // kg/m^3, by which the white is denser than the yolk, -500..500; below 0 the yolk sinks
+    float viscosity; // Pa s, of the white, 1e-4..1e3
     float press; // how much farther eggs reach than they are packed, relative, 0..0.05: they flatten where they touch
 } ty_roe_def;
 

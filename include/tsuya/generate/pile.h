@@ -92,7 +92,8 @@ typedef ty_wall_motion ty_wall_motion_fn(void* context, int wall, float seconds)
 void ty_pile_move_walls(ty_pile* pile, ty_wall_motion_fn* fn, void* context);
 // Other walls from now on; NULL = none. What bodies had from the walls before is forgotten. Borrowed as the def's.
 void ty_pile_set_container(ty_pile* pile, const ty_container* container);
-float ty_pile_time(const ty_pile* pile); // s, all substeps so far
+float ty_pile_time(const ty_pile* pile);      // s, all substeps so far
+ty_vec3 ty_pile_gravity(const ty_pile* pile); // m/s^2, as it pulls by now: it comes up over the first .05 s
 
 // One substep of 1/rate: soft contacts by sequential impulses that are kept from substep to substep, then a sweep
 // without bias ("relax", Catto's soft step), friction, rolling resistance. Equal bits for any worker count.
