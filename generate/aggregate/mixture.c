@@ -177,11 +177,12 @@ bool mixture_is_roe(const mixture* m, uint32_t grain)
     return m->kinds[m->kind_of[grain]].def.kind == TY_ELEMENT_ROE;
 }
 
-// Materials of a mixture are given by slot: a mesh that names none has one of its kind's name.
+// Materials of a mixture are given by slot: a mesh that names none has the recipe's, or one of its kind's name.
 static void slot_name(const mixture* m, const mixture_kind* kind, ty_mesh* mesh)
 {
-    if (m->kind_count > 1 && mesh->slot_count == 0)
-        (void)ty_mesh_add_slot(mesh, ty_element_kind_name(&kind->def));
+    const char* name = kind->def.slot ? kind->def.slot : ty_element_kind_name(&kind->def);
+    if ((m->kind_count > 1 || kind->def.slot) && mesh->slot_count == 0)
+        (void)ty_mesh_add_slot(mesh, name);
 }
 
 // The grains' meshes, then white and yolk of each kind of roe; further[kind] is the first of those.

@@ -62,6 +62,9 @@ static const ty_param element_rows[] = {
     {"bean", TY_PARAM_ENUM, "", 0, 0, beans, NULL, offsetof(OWNER, bean), "of beans: the sizes, where none are given",
      false},
     FIELD("mesh", TY_PARAM_PATH, "", 0, 0, mesh, "a closed mesh, with kind mesh"),
+    FIELD(
+        "slot", TY_PARAM_STRING, "", 0, 0, slot,
+        "name of its material slot, unless its mesh has names; of several kinds each has its kind's if none is given"),
     FIELD("length", TY_PARAM_FLOAT, "mm", 0, 500, length,
           "mean length; 0 = of the kind, of a mesh as its file has it. But for rice, sizes of 0 follow those given"),
     FIELD("width", TY_PARAM_FLOAT, "mm", 0, 500, width, "mean width, at most the length; 0 = of the kind"),

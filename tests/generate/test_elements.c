@@ -220,6 +220,28 @@ static void impossible_ones_are_refused(void** state)
     (void)remove(path);
 }
 
+// Two lots of one kind are told apart by slots of their own; the rest keep their kind's names.
+static void slots_have_given_names(void** state)
+{
+    (void)state;
+    ty_element_def defs[3] = {def_of(TY_ELEMENT_BALL), def_of(TY_ELEMENT_BALL), def_of(TY_ELEMENT_BALL)};
+    for (int i = 0; i < 3; i++)
+        defs[i].length = 0.005f;
+    defs[0].slot = "unripe";
+    defs[1].slot = "ripe";
+    ty_aggregate_recipe r = mixed(defs, 3);
+    ty_aggregate* a = made(&r, NULL);
+    assert_string_equal(a->prototypes[0]->slot_names[0], "unripe");
+    assert_string_equal(a->prototypes[1]->slot_names[0], "ripe");
+    assert_string_equal(a->prototypes[2]->slot_names[0], "ball");
+    ty_aggregate_destroy(a);
+    r = mixed(defs, 0);
+    r.element = defs[1];
+    a = made(&r, NULL);
+    assert_string_equal(a->prototypes[0]->slot_names[0], "ripe");
+    ty_aggregate_destroy(a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -229,6 +251,7 @@ int main(void)
         cmocka_unit_test(same_again_and_each_its_own),
         cmocka_unit_test(cultivars_differ_in_length),
         cmocka_unit_test(kinds_mix_by_ratio),
+        cmocka_unit_test(slots_have_given_names),
         cmocka_unit_test(impossible_ones_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

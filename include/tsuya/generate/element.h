@@ -68,6 +68,7 @@ typedef struct ty_element_def
     int cultivar;     // ty_cultivar, of rice
     int bean;         // ty_bean, of beans
     const char* mesh; // path, with TY_ELEMENT_MESH
+    const char* slot; // material slot of a mesh that names none; NULL = of a mixture the kind's name, else none
     float length;     // m, along x; 0 = of the kind, of a mesh its own
     float width;      // m, along y; <= length; 0 = of the kind
     float thickness;  // m, along z; <= width; 0 = of the kind
