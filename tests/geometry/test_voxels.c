@@ -270,6 +270,37 @@ static void test_ball_shrinks_and_grows(void** state)
 
 // --- meshes ---
 
+// The triangles about each vertex are one fan: one walks from each over the vertex's edges to all of them.
+static void assert_one_fan(const ty_mesh* mesh)
+{
+    uint32_t* degree = TY_ALLOC(uint32_t, mesh->vertex_count);
+    uint32_t(*fan)[24][2] = ty_alloc(mesh->vertex_count, sizeof(*fan)); // from the next corner to the one after
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        for (int e = 0; e < 3; e++)
+        {
+            uint32_t v = mesh->triangles[t][e], *side = fan[v][degree[v]++];
+            assert_true(degree[v] <= 24);
+            side[0] = mesh->triangles[t][(e + 1) % 3];
+            side[1] = mesh->triangles[t][(e + 2) % 3];
+        }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+    {
+        uint32_t steps = 0, at = fan[v][0][0];
+        do
+        {
+            uint32_t i = 0;
+            while (i < degree[v] && fan[v][i][0] != at)
+                i++;
+            assert_true(i < degree[v]);
+            at = fan[v][i][1];
+            steps++;
+        } while (at != fan[v][0][0]);
+        assert_int_equal(steps, degree[v]);
+    }
+    ty_free(degree);
+    ty_free(fan);
+}
+
 // Noise at the nodes: the worst there is for sheets that touch in edges and corners.
 static void test_closed_whatever_the_field(void** state)
 {
@@ -292,6 +323,7 @@ static void test_closed_whatever_the_field(void** state)
         assert_int_equal(t.nonmanifold_edges, 0);
         assert_int_equal(t.misoriented_edges, 0);
         assert_true(mesh->triangle_count > 5000);
+        assert_one_fan(mesh);
         for (uint32_t i = 0; i < mesh->vertex_count; i++)
             assert_true(ty_is_finite3(mesh->positions[i]) && isfinite(mesh->curvature_1[i]));
         ty_mesh_destroy(mesh);
