@@ -13,7 +13,6 @@ ty_element_def ty_element_def_default(void)
                             .variants = 16,
                             .notch = 0.15f,
                             .divisions = 9,
-                            .fit = 0.03f,
                             .roe = {.lean = TY_PI / 4.0f, .buoyancy = 110.0f, .viscosity = 0.02f, .press = 0.012f}};
 }
 
@@ -66,6 +65,8 @@ static ty_status sizes_check(const ty_element_def* e, const char* name, ty_error
     if (!(thickness >= thinnest * width && thickness <= width))
         return ty_error_set(error, TY_BAD_INPUT, "%s.thickness: %g mm; with a width of %g mm it lies in %g..%g", name,
                             thickness, width, thinnest * width, width);
+    if (e->fit > 0.0f && !(e->fit >= 0.01f))
+        return ty_error_set(error, TY_BAD_INPUT, "%s.fit: %g; it is 0 or lies in 0.01..0.2", name, (double)e->fit);
     if (e->variants < 1 || e->variants > TY_ELEMENT_MAX_VARIANTS)
         return ty_error_set(error, TY_BAD_INPUT, "%s.variants: %d; it lies in 1..%d", name, e->variants,
                             TY_ELEMENT_MAX_VARIANTS);
@@ -86,8 +87,16 @@ static void sizes_complete(ty_element_def* def)
     def->thickness = def->thickness > 0.0f ? def->thickness : share * size.z;
 }
 
+// Ten balls are within 5 % of the width of a grain of japonica, and a bowl of them takes .6 of the time of one within
+// 3 %; all other elements are met within 3 %.
+static float kind_fit(const ty_element_def* def)
+{
+    return def->kind == TY_ELEMENT_RICE && def->cultivar == TY_CULTIVAR_JAPONICA ? 0.0f : 0.03f;
+}
+
 ty_status ty_element_complete(ty_element_def* def, const char* name, ty_error* error)
 {
+    def->fit = def->fit > 0.0f ? def->fit : kind_fit(def);
     if (def->kind == TY_ELEMENT_ROE)
         return ty_roe_complete(def, error);
     if (def->kind == TY_ELEMENT_MESH)

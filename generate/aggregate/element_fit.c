@@ -2,18 +2,20 @@
 // Balls for any closed mesh: one for the point that is worst met, then all of them by least squares, and again.
 #include "balls.h"
 #include "element_kinds.h"
-#include <tsuya/geometry/trace.h>
+#include <tsuya/geometry/voxels.h>
 
 enum
 {
     SAMPLES = 3000,    // of the surface
-    CANDIDATES = 9000, // cells of the box
+    CANDIDATES = 9000, // nodes of the box, about
     REFINEMENTS = 3,   // of all balls, after each new one
+    NODES = 32,        // of the distances across the width
 };
 
 typedef struct fit
 {
-    ty_ball* candidates; // largest inner balls about the points of a grid
+    ty_voxels field;     // distances from the surface
+    ty_ball* candidates; // largest inner balls about nodes of it
     int candidate_count;
     ty_vec3* samples;
     uint32_t sample_count;
@@ -53,35 +55,44 @@ static void samples_draw(fit* f, const ty_mesh* mesh)
         }
 }
 
-static ty_status candidates_find(fit* f, const ty_mesh* mesh, ty_error* error)
+static ty_status candidates_find(fit* f, ty_error* error)
 {
-    ty_world_def def = ty_world_def_default();
-    ty_world* world;
-    uint32_t prototype;
-    ty_status status = ty_world_create(&def, &world, error);
-    if (status != TY_OK)
-        return status;
-    status = ty_world_add_prototype(world, mesh, &prototype, error);
-    if (status == TY_OK)
-        status = ty_world_commit(world, error);
-    ty_vec3 low = mesh->bounds.low, size = ty_sub(mesh->bounds.high, low);
-    float step = ty_pow(size.x * size.y * size.z / (float)CANDIDATES, 1.0f / 3.0f);
-    int n[3] = {(int)(size.x / step) | 1, (int)(size.y / step) | 1, (int)(size.z / step) | 1};
-    for (int k = 0; k < n[2] && status == TY_OK; k++)
-        for (int j = 0; j < n[1]; j++)
-            for (int i = 0; i < n[0] && f->candidate_count < 2 * CANDIDATES; i++)
+    const ty_voxels* v = &f->field;
+    float all = (float)v->size[0] * (float)v->size[1] * (float)v->size[2];
+    int stride = (int)ty_max(1.0f, ty_pow(all / (float)CANDIDATES, 1.0f / 3.0f) + 0.5f);
+    size_t most = 1;
+    for (int i = 0; i < 3; i++)
+        most *= (size_t)((v->size[i] + stride - 1) / stride);
+    f->candidates = TY_ALLOC(ty_ball, most);
+    for (int k = 0; k < v->size[2]; k += stride)
+        for (int j = 0; j < v->size[1]; j += stride)
+            for (int i = 0; i < v->size[0]; i += stride)
             {
-                ty_vec3 share = {((float)i + 0.5f) / (float)n[0], ((float)j + 0.5f) / (float)n[1],
-                                 ((float)k + 0.5f) / (float)n[2]};
-                ty_vec3 p = ty_add(low, ty_mul3(size, share));
-                ty_closest closest;
-                if (ty_world_inside(world, prototype, p) && ty_world_closest(world, prototype, p, 1e3f, &closest))
-                    f->candidates[f->candidate_count++] = (ty_ball){p, closest.distance};
+                float d = v->values[((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->size[0] + (size_t)i];
+                ty_vec3 p = ty_mad(v->origin, ty_vec3_make((float)i, (float)j, (float)k), v->step);
+                if (d < 0.0f)
+                    f->candidates[f->candidate_count++] = (ty_ball){p, -d};
             }
-    ty_world_destroy(world);
-    if (status == TY_OK && f->candidate_count == 0)
+    if (f->candidate_count == 0)
         return ty_error_set(error, TY_BAD_INPUT, "the element is too thin for balls in it");
-    return status;
+    return TY_OK;
+}
+
+// The largest ball on the way inwards from the sample that comes as near as slack to it and reaches out of the solid by
+// no more: for corners that no node of the grid is near enough to.
+static ty_ball corner_candidate(const fit* f, ty_vec3 p, float slack)
+{
+    ty_ball best = {p, 0.0f};
+    ty_vec3 c = p;
+    for (int i = 0; i < 64; i++)
+    {
+        ty_voxel_sample s = ty_voxels_sample(&f->field, c);
+        float radius = slack - s.value;
+        if (radius > best.radius && ty_length(ty_sub(p, c)) - radius <= slack)
+            best = (ty_ball){c, radius};
+        c = ty_mad(c, ty_normalize(s.gradient), -0.25f * slack);
+    }
+    return best;
 }
 
 // The largest candidate that comes as near as slack to the sample; else the one that comes nearest.
@@ -104,6 +115,9 @@ static ty_ball candidate_for(const fit* f, ty_vec3 p, float slack)
             nearest = *b;
         }
     }
+    if (best.radius > 0.0f)
+        return best;
+    best = corner_candidate(f, p, slack);
     return best.radius > 0.0f ? best : nearest;
 }
 
@@ -166,6 +180,21 @@ static float middle_extent(const ty_mesh* mesh)
     return e.x + e.y + e.z - ty_max(e.x, ty_max(e.y, e.z)) - ty_min(e.x, ty_min(e.y, e.z));
 }
 
+// A ball may reach beyond the surface by slack; one that has left the solid, as no point of the surface keeps it from,
+// goes back to where it was.
+static void balls_hold(const fit* f, const ty_element* before, float slack, ty_element* e)
+{
+    for (int i = 0; i < e->ball_count; i++)
+    {
+        ty_ball* b = &e->balls[i];
+        float most = slack - ty_voxels_value(&f->field, b->center);
+        if (most < 0.5f * before->balls[i].radius)
+            *b = before->balls[i];
+        else
+            b->radius = ty_min(b->radius, most);
+    }
+}
+
 // A ball for the worst point, then all by least squares, until the goal holds; the best so far where it does not.
 static void balls_choose(fit* f, float goal, float slack, ty_element* e)
 {
@@ -175,12 +204,18 @@ static void balls_choose(fit* f, float goal, float slack, ty_element* e)
     e->balls[e->ball_count++] = largest_candidate(f);
     while (best.fit_max > goal)
     {
-        ty_balls_refine(f->samples, f->sample_count, REFINEMENTS, goal, e);
+        for (int i = 0; i < REFINEMENTS; i++)
+        {
+            const ty_element before = *e;
+            ty_balls_refine(f->samples, f->sample_count, 1, goal, e);
+            balls_hold(f, &before, slack, e);
+        }
+        ty_balls_refine(f->samples, f->sample_count, 0, goal, e); // measures
         if (e->fit_max < best.fit_max)
             best = *e;
         if (e->ball_count == TY_ELEMENT_MAX_BALLS)
             break;
-        e->balls[e->ball_count++] = candidate_for(f, f->samples[worst_outside(f, e)], slack);
+        e->balls[e->ball_count++] = candidate_for(f, f->samples[worst_outside(f, e)], 0.5f * goal);
     }
     *e = best;
 }
@@ -189,17 +224,21 @@ ty_status ty_element_fit(ty_element* element, float tolerance, ty_error* error)
 {
     const ty_mesh* mesh = element->mesh;
     fit f = {0};
-    element->width = middle_extent(mesh);
+    element->width = element->width > 0.0f ? element->width : middle_extent(mesh);
+    float step = element->width / NODES, goal = tolerance * element->width;
+    ty_status status = ty_voxels_from_mesh(mesh, step, 2.0f * step, &f.field, error);
+    if (status != TY_OK)
+        return status;
     f.samples = TY_ALLOC(ty_vec3, SAMPLES);
-    f.candidates = TY_ALLOC(ty_ball, 2 * CANDIDATES);
-    ty_status status = candidates_find(&f, mesh, error);
+    status = candidates_find(&f, error);
     if (status == TY_OK)
     {
         samples_draw(&f, mesh);
-        balls_choose(&f, tolerance * element->width, 0.5f * tolerance * element->width, element);
+        balls_choose(&f, goal, 0.8f * goal, element);
         ends_sort(element);
         element->capsule = ty_balls_capsule(element->balls, element->ball_count);
     }
+    ty_voxels_term(&f.field);
     ty_free(f.candidates);
     ty_free(f.samples);
     return status;

@@ -22,6 +22,7 @@ ty_vec3 ty_element_weigh(ty_element* element);
 void ty_element_enclose(ty_element* element);
 
 // Balls until no point of the surface is farther than tolerance (of the width) from their union: for the worst of
-// a point outside the largest inner ball that comes near it, then all by least squares, again and again. Sets
-// the width (the middle extent), balls, capsule and fit.
+// a point outside the largest inner ball that comes near it, then all by least squares, again and again; none
+// reaches farther than that out of the solid. Sets the width where it is 0 (to the middle extent), balls, capsule and
+// fit.
 TY_CHECKED ty_status ty_element_fit(ty_element* element, float tolerance, ty_error* error);

@@ -217,19 +217,35 @@ static void lattice_triangles(const lattice* g, ty_mesh* mesh)
     TY_ASSERT(count == mesh->triangle_count);
 }
 
-// smooth holds the surface without its dent, which the balls are fitted to.
-static void grain_finish(ty_element* grain, const shape* s, ty_vec3* smooth)
+// Balls for the surface without its dent, where the mesh has a dent that balls need not follow.
+static ty_status smooth_fit(ty_element* grain, ty_vec3* smooth, float tolerance, ty_error* error)
 {
+    ty_vec3* dented = grain->mesh->positions;
+    grain->mesh->positions = smooth;
+    ty_mesh_compute_bounds(grain->mesh);
+    ty_status status = ty_element_fit(grain, tolerance, error);
+    grain->mesh->positions = dented;
+    return status;
+}
+
+// smooth holds the surface without its dent, which the balls are fitted to.
+static ty_status grain_finish(ty_element* grain, const shape* s, ty_vec3* smooth, float tolerance, ty_error* error)
+{
+    ty_status status = TY_OK;
     ty_vec3 shift = ty_element_weigh(grain);
     for (uint32_t i = 0; i < grain->mesh->vertex_count; i++)
         smooth[i] = ty_sub(smooth[i], shift);
     grain->width = 2.0f * s->b;
-    ty_balls_fit(smooth, grain->mesh->vertex_count, ty_vec3_make(s->a, s->b, s->c), s->bend, grain);
+    if (tolerance > 0.0f)
+        status = smooth_fit(grain, smooth, tolerance, error);
+    else
+        ty_balls_fit(smooth, grain->mesh->vertex_count, ty_vec3_make(s->a, s->b, s->c), s->bend, grain);
     ty_element_enclose(grain);
     ty_mesh_compute_bounds(grain->mesh);
     ty_mesh_compute_welds(grain->mesh);
     ty_mesh_compute_normals(grain->mesh, TY_PI);
     ty_mesh_compute_curvature(grain->mesh, 2);
+    return status;
 }
 
 ty_status ty_rice_init(const ty_element_def* def, ty_seed seed, int variant, ty_element* out, ty_error* error)
@@ -255,13 +271,12 @@ ty_status ty_rice_init(const ty_element_def* def, ty_seed seed, int variant, ty_
             u[i] = shape_point(&s, u[i], s.notch);
         }
         lattice_triangles(&g, out->mesh);
-        grain_finish(out, &s, smooth);
+        status = grain_finish(out, &s, smooth, def->fit, error);
     }
     else
-    {
-        ty_element_term(out);
         status = ty_error_set(error, TY_NO_MEMORY, "no memory for a grain of %d divisions", def->divisions);
-    }
+    if (status != TY_OK)
+        ty_element_term(out);
     ty_free(smooth);
     ty_free(g.index);
     return status;

@@ -76,8 +76,10 @@ static const ty_param element_rows[] = {
     FIELD("notch", TY_PARAM_FLOAT, "", 0, 0.3, notch,
           "depth of the dent of a germ, a hilum or a stem (a third of it), of the width"),
     FIELD("divisions", TY_PARAM_INT, "", 4, 64, divisions, "cells across the width of a mesh"),
-    FIELD("fit", TY_PARAM_FLOAT, "", 0.01, 0.2, fit,
-          "farthest that balls and surface are apart, of the width; rice has ten balls whatever it is"),
+    FIELD("fit", TY_PARAM_FLOAT, "", 0, 0.2, fit,
+          "farthest that balls and surface are apart, of the width, from 0.01; 0 = of the kind: 0.03, of japonica rice "
+          "ten "
+          "balls"),
     {"roe", TY_PARAM_GROUP, "", 0, 0, NULL, &roe_table, offsetof(OWNER, roe), "with kind roe: the egg", false},
 };
 #undef OWNER

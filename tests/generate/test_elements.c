@@ -6,6 +6,7 @@
 #include <tsuya/base/file.h>
 #include <tsuya/geometry/mesh_file.h>
 #include <tsuya/geometry/shape.h>
+#include <tsuya/geometry/voxels.h>
 #include <unistd.h>
 
 static const ty_seed seed = {5};
@@ -16,6 +17,7 @@ static ty_element_def def_of(int kind)
 {
     ty_element_def def = ty_element_def_default();
     def.kind = kind;
+    def.fit = 0.03f;
     return def;
 }
 
@@ -69,6 +71,35 @@ static void fit_holds_elsewhere(void** state)
             worst = ty_max(worst, fabsf(least));
         }
         assert_true(worst < 1.6f * def.fit * e.width);
+        ty_element_term(&e);
+    }
+}
+
+// And the other way round: no ball lies outside, or reaches farther than that beyond the surface, where no point of the
+// surface would tell. Cultivars of long grains as well.
+static void balls_stay_within(void** state)
+{
+    (void)state;
+    static ty_element e;
+    for (size_t i = 0; i < sizeof solids / sizeof *solids + 4; i++)
+    {
+        bool rice = i >= sizeof solids / sizeof *solids;
+        ty_element_def def = def_of(rice ? TY_ELEMENT_RICE : solids[i]);
+        def.cultivar = rice ? (int)(i - sizeof solids / sizeof *solids) : 0;
+        def.notch = 0.0f;
+        element_make(&def, 0, &e);
+        ty_voxels field;
+        ty_error error;
+        float step = e.width / 40.0f;
+        assert_int_equal(ty_voxels_from_mesh(e.mesh, step, step, &field, &error), TY_OK);
+        assert_true(e.fit_max <= 0.0301f * e.width);
+        for (int b = 0; b < e.ball_count; b++)
+        {
+            float inside = -ty_voxels_value(&field, e.balls[b].center);
+            assert_true(inside > -0.02f * e.width);
+            assert_true(e.balls[b].radius < inside + 0.05f * e.width);
+        }
+        ty_voxels_term(&field);
         ty_element_term(&e);
     }
 }
@@ -195,6 +226,25 @@ static void kinds_mix_by_ratio(void** state)
     ty_aggregate_destroy(a);
 }
 
+static void flakes_pack_with_defaults(void** state)
+{
+    (void)state;
+    ty_aggregate_recipe r = mixed(NULL, 0);
+    r.element = def_of(TY_ELEMENT_ICE);
+    r.element.variants = 4;
+    r.element.fit = 0.0f;
+    r.container.shape.size = ty_vec3_make(0.01f, 0.01f, 0.01f);
+    r.fill.sprinkle = 0.0f;
+    r.settle.max_seconds = 0.1f;
+    ty_aggregate* a = NULL;
+    ty_error error;
+    ty_status status = ty_aggregate_make(&r, NULL, &a, &error);
+    if (!a)
+        fail_msg("%d: %s", (int)status, error.text);
+    assert_int_equal(a->instance_count, 120);
+    ty_aggregate_destroy(a);
+}
+
 static void impossible_ones_are_refused(void** state)
 {
     (void)state;
@@ -247,6 +297,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(closed_and_met),
         cmocka_unit_test(fit_holds_elsewhere),
+        cmocka_unit_test(balls_stay_within),
+        cmocka_unit_test(flakes_pack_with_defaults),
         cmocka_unit_test(mesh_weighs_as_a_box),
         cmocka_unit_test(same_again_and_each_its_own),
         cmocka_unit_test(cultivars_differ_in_length),

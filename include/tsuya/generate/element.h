@@ -76,7 +76,7 @@ typedef struct ty_element_def
     int variants;     // different meshes, 1..TY_ELEMENT_MAX_VARIANTS; balls, roe and meshes have one
     float notch;      // depth of the dent of germ, stem or hilum, of the width, 0..0.3
     int divisions;    // cells across the width, 4..64; rice: triangles = 4 (2 n d + d^2), n = round(d length / width)
-    float fit;        // largest distance of balls and surface, of the width, 0.01..0.2; not of rice, which has ten
+    float fit;        // largest distance of balls and surface, of the width, 0.01..0.2; 0 = of the kind, see complete
     ty_roe_def roe;
 } ty_element_def;
 
@@ -86,8 +86,8 @@ const char* ty_element_kind_name(const ty_element_def* def);
 ty_element_def ty_element_def_default(void); // cooked japonica rice
 const ty_param_table* ty_element_params(void);
 
-// Puts in the sizes that are 0, those of the kind; what is impossible is TY_BAD_INPUT. name: the element's, for
-// messages.
+// Puts in the sizes and the fit that are 0, those of the kind (the fit stays 0 where a grain has ten balls); what is
+// impossible is TY_BAD_INPUT. name: the element's, for messages.
 TY_CHECKED ty_status ty_element_complete(ty_element_def* def, const char* name, ty_error* error);
 
 typedef struct ty_ball
