@@ -5,7 +5,7 @@
 
 enum
 {
-    BAND = 6, // steps from the surface within which the distance is the nearest triangle's
+    BAND = 4, // steps from the surface within which the distance is the nearest triangle's
 };
 
 typedef struct scan
@@ -182,8 +182,8 @@ static void line_transform(envelope* e, int32_t* site, size_t stride, int n)
 // How far the site is from node (i, j, k) across the axis, squared: what earlier axes have found.
 static double across(const ty_voxels* v, int32_t site, const int node[3], int axis)
 {
-    if (site < 0)
-        return -1.0;
+    if (site < 0 || axis == 0)
+        return site < 0 ? -1.0 : 0.0;
     int x = site % v->size[0], y = site / v->size[0] % v->size[1], z = site / v->size[0] / v->size[1];
     const int d[3] = {x - node[0], y - node[1], z - node[2]};
     double sum = 0.0;
@@ -289,7 +289,7 @@ static void distances_finish(scan* s)
                         neighbours_ask(s, (const int[3]){i, j, k}, p);
                     else
                         node_try(s, node, p, s->near[s->site[node]]);
-                    if (v->values[node] < ty_sqr(BAND * v->step))
+                    if (pass == 0 && v->values[node] < ty_sqr((BAND + 1) * v->step))
                         node_descend(s, node, p);
                 }
     for (size_t i = 0; i < voxels_count(v); i++)

@@ -12,7 +12,7 @@ ty_element_def ty_element_def_default(void)
                             .variation = 0.06f,
                             .variants = 16,
                             .notch = 0.15f,
-                            .divisions = 9,
+                            .grain = ty_grain_def_default(),
                             .roe = {.lean = TY_PI / 4.0f, .buoyancy = 110.0f, .viscosity = 0.02f, .press = 0.012f}};
 }
 
@@ -65,8 +65,14 @@ static ty_status sizes_check(const ty_element_def* e, const char* name, ty_error
     if (!(thickness >= thinnest * width && thickness <= width))
         return ty_error_set(error, TY_BAD_INPUT, "%s.thickness: %g mm; with a width of %g mm it lies in %g..%g", name,
                             thickness, width, thinnest * width, width);
+    float swelling = e->grain.swelling;
+    if (swelling != 0.0f && !(swelling >= 1.0f && swelling <= 1.5f))
+        return ty_error_set(error, TY_BAD_INPUT, "%s.grain.swelling: %g; it is 0 or lies in 1..1.5", name,
+                            (double)swelling);
     if (e->fit > 0.0f && !(e->fit >= 0.01f))
         return ty_error_set(error, TY_BAD_INPUT, "%s.fit: %g; it is 0 or lies in 0.01..0.2", name, (double)e->fit);
+    if (e->divisions < 4 || e->divisions > 64)
+        return ty_error_set(error, TY_BAD_INPUT, "%s.divisions: %d; it is 0 or lies in 4..64", name, e->divisions);
     if (e->variants < 1 || e->variants > TY_ELEMENT_MAX_VARIANTS)
         return ty_error_set(error, TY_BAD_INPUT, "%s.variants: %d; it lies in 1..%d", name, e->variants,
                             TY_ELEMENT_MAX_VARIANTS);
@@ -91,12 +97,15 @@ static void sizes_complete(ty_element_def* def)
 // 3 %; all other elements are met within 3 %.
 static float kind_fit(const ty_element_def* def)
 {
-    return def->kind == TY_ELEMENT_RICE && def->cultivar == TY_CULTIVAR_JAPONICA ? 0.0f : 0.03f;
+    bool ten = def->kind == TY_ELEMENT_RICE && def->cultivar == TY_CULTIVAR_JAPONICA && def->model == TY_RICE_FORMULA;
+    return ten ? 0.0f : 0.03f;
 }
 
 ty_status ty_element_complete(ty_element_def* def, const char* name, ty_error* error)
 {
     def->fit = def->fit > 0.0f ? def->fit : kind_fit(def);
+    if (def->divisions == 0) // pores of a field are fine
+        def->divisions = def->kind == TY_ELEMENT_RICE && def->model == TY_RICE_FIELD ? 24 : 9;
     if (def->kind == TY_ELEMENT_ROE)
         return ty_roe_complete(def, error);
     if (def->kind == TY_ELEMENT_MESH)
@@ -122,7 +131,8 @@ ty_status ty_element_init(const ty_element_def* def, ty_seed seed, int variant, 
     if (complete.kind == TY_ELEMENT_ROE)
         return ty_roe_init(&complete, out, error);
     if (complete.kind == TY_ELEMENT_RICE)
-        return ty_rice_init(&complete, seed, variant, out, error);
+        return (complete.model == TY_RICE_FIELD ? ty_rice_field_init : ty_rice_init)(&complete, seed, variant, out,
+                                                                                     error);
     status = complete.kind == TY_ELEMENT_ICE ? ty_ice_mesh(&complete, seed, variant, &out->mesh, error)
                                              : ty_solid_mesh(&complete, seed, variant, &out->mesh, error);
     if (status == TY_OK)

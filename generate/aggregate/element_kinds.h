@@ -8,6 +8,17 @@
 TY_CHECKED ty_status ty_rice_init(const ty_element_def* def, ty_seed seed, int variant, ty_element* out,
                                   ty_error* error);
 
+// The surface of that grain alone, at so many divisions, about its formula's origin: positions and triangles; dented or
+// not. *width (m) is the variant's. On failure *out is NULL.
+TY_CHECKED ty_status ty_rice_surface(const ty_element_def* def, ty_seed seed, int variant, int divisions, bool dented,
+                                     ty_mesh** out, float* width, ty_error* error);
+// The same grain as a solid on a grid.
+TY_CHECKED ty_status ty_rice_field_init(const ty_element_def* def, ty_seed seed, int variant, ty_element* out,
+                                        ty_error* error);
+ty_grain_def ty_grain_def_default(void);
+// What a cultivar swells by in cooking: 1.2 or 1.5 of its volume.
+float ty_rice_swelling(int cultivar);
+
 // Sizes of a mesh file; the rest as ty_element_complete.
 TY_CHECKED ty_status ty_solid_complete(ty_element_def* def, const char* name, ty_error* error);
 // The meshes of balls, grapes, beans, tofu, pebbles and files, with welds, normals and curvature.

@@ -248,19 +248,51 @@ static ty_status grain_finish(ty_element* grain, const shape* s, ty_vec3* smooth
     return status;
 }
 
+static ty_status lattice_create(const ty_element_def* def, int divisions, lattice* g, ty_mesh** mesh, ty_error* error)
+{
+    *g = (lattice){.n = divisions, .nx = (int)((float)divisions * def->length / def->width + 0.5f)};
+    g->index = TY_TRY_ALLOC(int32_t, (size_t)(g->nx + 1) * (size_t)(g->n + 1) * (size_t)(g->n + 1));
+    *mesh = NULL;
+    if (g->index)
+    {
+        lattice_number(g);
+        *mesh = ty_mesh_create(g->count, (uint32_t)(4 * (2 * g->nx * g->n + g->n * g->n)));
+    }
+    if (*mesh)
+        return TY_OK;
+    ty_free(g->index);
+    g->index = NULL;
+    return ty_error_set(error, TY_NO_MEMORY, "no memory for a grain of %d divisions", divisions);
+}
+
+ty_status ty_rice_surface(const ty_element_def* def, ty_seed seed, int variant, int divisions, bool dented,
+                          ty_mesh** out, float* width, ty_error* error)
+{
+    shape s = shape_draw(def, seed, variant);
+    lattice g;
+    ty_status status = lattice_create(def, divisions, &g, out, error);
+    if (status != TY_OK)
+        return status;
+    lattice_directions(&g, (*out)->positions);
+    lattice_relax(&g, &s, (*out)->positions, (*out)->normals);
+    for (uint32_t i = 0; i < g.count; i++)
+        (*out)->positions[i] = shape_point(&s, (*out)->positions[i], dented ? s.notch : 0.0f);
+    lattice_triangles(&g, *out);
+    ty_free(g.index);
+    *width = 2.0f * s.b;
+    return TY_OK;
+}
+
 ty_status ty_rice_init(const ty_element_def* def, ty_seed seed, int variant, ty_element* out, ty_error* error)
 {
     memset(out, 0, sizeof *out);
     shape s = shape_draw(def, seed, variant);
-    lattice g = {.n = def->divisions, .nx = (int)((float)def->divisions * def->length / def->width + 0.5f)};
-    g.index = TY_TRY_ALLOC(int32_t, (size_t)(g.nx + 1) * (size_t)(g.n + 1) * (size_t)(g.n + 1));
-    if (!g.index)
-        return ty_error_set(error, TY_NO_MEMORY, "no memory for a grain of %d divisions", def->divisions);
-    lattice_number(&g);
-    out->mesh = ty_mesh_create(g.count, (uint32_t)(4 * (2 * g.nx * g.n + g.n * g.n)));
+    lattice g;
+    ty_status status = lattice_create(def, def->divisions, &g, &out->mesh, error);
+    if (status != TY_OK)
+        return status;
     ty_vec3* smooth = TY_TRY_ALLOC(ty_vec3, g.count);
-    ty_status status = TY_OK;
-    if (out->mesh && smooth)
+    if (smooth)
     {
         ty_vec3* u = out->mesh->positions;
         lattice_directions(&g, u);

@@ -7,6 +7,7 @@
 static const char* const element_kinds[] = {"rice", "roe",  "ball",   "ice",  "grape",
                                             "bean", "tofu", "pebble", "mesh", NULL};
 static const char* const cultivars[] = {"japonica", "indica", "aromatic", "glutinous", NULL};
+static const char* const rice_models[] = {"formula", "field", NULL};
 static const char* const beans[] = {"red", "black", "white", NULL};
 static const char* const roe_presets[] = {"ikura", "tobiko", "tarako", "kazunoko", NULL};
 
@@ -43,6 +44,45 @@ static const ty_param_table roe_table = {
     roe_rows,
     TY_PARAM_COUNT(roe_rows)};
 
+static void grain_set_default(void* def)
+{
+    *(ty_grain_def*)def = ty_element_def_default().grain;
+}
+
+#define OWNER ty_grain_def
+static const ty_param grain_rows[] = {
+    FIELD("voxels", TY_PARAM_INT, "", 16, 128, voxels, "across the width, of the grid that the grain is made on"),
+    FIELD("swelling", TY_PARAM_FLOAT, "", 0, 1.5, swelling,
+          "volume over that of the raw grain, from 1; 0 = of the cultivar: 1.2 of indica, else 1.5, as the sizes mean "
+          "it"),
+    FIELD("unevenness", TY_PARAM_FLOAT, "", 0, 1, unevenness,
+          "of the swelling from grain to grain: standard deviation of what it adds"),
+    FIELD("bumps", TY_PARAM_INT, "", 0, 1000, bumps, "balls that rise from the surface"),
+    FIELD("bump_radius", TY_PARAM_FLOAT, "mm", 0.01, 5, bump_radius, "of those, mean"),
+    FIELD("bump_height", TY_PARAM_FLOAT, "mm", 0, 1, bump_height, "how far they rise, at most"),
+    FIELD("pores", TY_PARAM_INT, "", 0, 2000, pores, "balls that are taken out, as deep as the pores of soaking reach"),
+    FIELD("pore_radius", TY_PARAM_FLOAT, "mm", 0.01, 5, pore_radius,
+          "of those, mean; what is smaller than a voxel is not seen"),
+    FIELD("open", TY_PARAM_FLOAT, "", 0, 1, open, "share of the pores that open at the surface"),
+    FIELD("smoothing", TY_PARAM_FLOAT, "mm", 0, 1, smoothing,
+          "flow by mean curvature for so long that a ball of this radius vanishes"),
+    FIELD("soak", TY_PARAM_FLOAT, "min", 0, 120, soak,
+          "in water before cooking: how deep the grain is porous, and the attribute pores of its vertices"),
+    FIELD("cut", TY_PARAM_FLOAT, "", 0, 0.9, cut,
+          "share of the length that is cut off, so that one sees into the grain"),
+};
+#undef OWNER
+
+static const ty_param_table grain_table = {
+    "aggregate.element.grain",
+    "A grain of rice as a field of distances (Gan 2023): a base grain with balls on it and pores in it, swollen and "
+    "smoothed. Its vertices have the attributes pores (how far soaking has opened the tissue there, 0 to 1) and depth "
+    "(under the skin, 1 = in the middle), for materials.",
+    sizeof(ty_grain_def),
+    grain_set_default,
+    grain_rows,
+    TY_PARAM_COUNT(grain_rows)};
+
 static void element_set_default(void* def)
 {
     *(ty_element_def*)def = ty_element_def_default();
@@ -75,11 +115,15 @@ static const ty_param element_rows[] = {
           "how many different meshes are made; of ball, roe and mesh there is one"),
     FIELD("notch", TY_PARAM_FLOAT, "", 0, 0.3, notch,
           "depth of the dent of a germ, a hilum or a stem (a third of it), of the width"),
-    FIELD("divisions", TY_PARAM_INT, "", 4, 64, divisions, "cells across the width of a mesh"),
+    FIELD("divisions", TY_PARAM_INT, "", 0, 64, divisions,
+          "cells across the width of a mesh, from 4; 0 = of the kind: 9, of rice from a field 24"),
     FIELD("fit", TY_PARAM_FLOAT, "", 0, 0.2, fit,
           "farthest that balls and surface are apart, of the width, from 0.01; 0 = of the kind: 0.03, of japonica rice "
           "ten "
           "balls"),
+    {"model", TY_PARAM_ENUM, "", 0, 0, rice_models, NULL, offsetof(OWNER, model),
+     "of rice: a smooth surface from a formula, or a porous solid from a field", false},
+    {"grain", TY_PARAM_GROUP, "", 0, 0, NULL, &grain_table, offsetof(OWNER, grain), "of rice with model field", false},
     {"roe", TY_PARAM_GROUP, "", 0, 0, NULL, &roe_table, offsetof(OWNER, roe), "with kind roe: the egg", false},
 };
 #undef OWNER

@@ -49,7 +49,7 @@ static float torus_distance(ty_vec3 p)
     return sqrtf(x * x + p.y * p.y) - 0.004f;
 }
 
-// The worst error in steps, of nodes up to six steps from the surface and of those beyond.
+// The worst error in steps, of nodes up to four steps from the surface and of those beyond.
 static void worst_distance(const ty_voxels* v, distance_fn* distance, double worst[2])
 {
     worst[0] = worst[1] = 0.0;
@@ -57,7 +57,7 @@ static void worst_distance(const ty_voxels* v, distance_fn* distance, double wor
         for (int j = 0; j < v->size[1]; j++)
             for (int i = 0; i < v->size[0]; i++, n++)
             {
-                double d = (double)distance(place(v, i, j, k)), *most = &worst[fabs(d) > 6.0 * (double)v->step];
+                double d = (double)distance(place(v, i, j, k)), *most = &worst[fabs(d) > 4.0 * (double)v->step];
                 *most = fmax(*most, fabs((double)v->values[n] - d) / (double)v->step);
             }
 }

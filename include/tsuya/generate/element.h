@@ -33,6 +33,12 @@ typedef enum ty_cultivar
     TY_CULTIVAR_GLUTINOUS,
 } ty_cultivar;
 
+typedef enum ty_rice_model
+{
+    TY_RICE_FORMULA, // a smooth surface from a formula
+    TY_RICE_FIELD,   // a solid on a grid of distances: uneven, porous, swollen, and cut if one likes
+} ty_rice_model;
+
 typedef enum ty_bean
 {
     TY_BEAN_RED, // kidney
@@ -61,6 +67,34 @@ typedef struct ty_roe_def
     float press; // how much farther eggs reach than they are packed, relative, 0..0.05: they flatten where they touch
 } ty_roe_def;
 
+// A grain of rice as a field (Gan 2023, section 3.1.1). Lengths are those of the cooked grain.
+typedef struct ty_grain_def
+{
+    int voxels;        // across the width, 16..128
+    float swelling;    // volume over that of the raw grain, 1..1.5, mean; 0 = of the cultivar
+    float unevenness;  // standard deviation of the swelling, relative to what it adds, 0..1
+    int bumps;         // balls on the surface, 0..1000
+    float bump_radius; // m, mean
+    float bump_height; // m, how far they rise over the surface at most
+    int pores;         // balls that are taken out, 0..2000
+    float pore_radius; // m, mean
+    float open;        // share of the pores that lie at the surface, 0..1
+    float smoothing;   // m: what is rounder than that stays; a ball of this radius just vanishes
+    float soak;        // min, in water before cooking, 0..120: how deep pores reach
+    float cut;         // share of the length that is cut off, 0..0.9, to see into it
+} ty_grain_def;
+
+// What soaking leaves of the dense tissue of a cooked grain, after Tomita et al. as told by Gan 2023, table 1 and
+// section 2.2: microscopic pores, far below a voxel.
+typedef struct ty_rice_pores
+{
+    float area;  // m^2, mean of a pore: 0.02 um^2 unsoaked to 4.72 um^2 after two hours
+    float depth; // m, of the porous layer: 0.1 mm unsoaked, 0.2 mm from 20 min on; then to the centre at two hours
+} ty_rice_pores;
+
+// seconds in water, clamped to 0..7200; half_thickness (m): of the grain.
+ty_rice_pores ty_rice_pores_after(float seconds, float half_thickness);
+
 typedef struct ty_element_def
 {
     int kind;         // ty_element_kind
@@ -75,8 +109,11 @@ typedef struct ty_element_def
     float variation;  // standard deviation of the three sizes, relative, 0..0.2
     int variants;     // different meshes, 1..TY_ELEMENT_MAX_VARIANTS; balls, roe and meshes have one
     float notch;      // depth of the dent of germ, stem or hilum, of the width, 0..0.3
-    int divisions;    // cells across the width, 4..64; rice: triangles = 4 (2 n d + d^2), n = round(d length / width)
+    int divisions;    // cells across the width, 4..64, 0 = of the kind; rice: triangles = 4 (2 n d + d^2), n = round(d
+                      // length / width)
     float fit;        // largest distance of balls and surface, of the width, 0.01..0.2; 0 = of the kind, see complete
+    int model;        // ty_rice_model
+    ty_grain_def grain; // of rice with TY_RICE_FIELD
     ty_roe_def roe;
 } ty_element_def;
 
