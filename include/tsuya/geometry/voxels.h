@@ -26,8 +26,8 @@ typedef struct ty_voxel_sample
 // The distance from a closed, outward mesh, on a grid of that step that reaches margin beyond its bounds. The sign is
 // that of the winding number, counted along the rows of nodes: inside where it is above 0, so that bodies of one mesh
 // may overlap. The nearest triangle of nodes next to the surface goes to all others by the exact Euclidean distance
-// transform of their grid (Felzenszwalb and Huttenlocher 2012), and its own distance is taken. Up to four steps from the
-// surface that is within a tenth of a step of the distance from the mesh, beyond within half a step. TY_BAD_INPUT
+// transform of their grid (Felzenszwalb and Huttenlocher 2012), and its own distance is taken. Up to four steps from
+// the surface that is within a tenth of a step of the distance from the mesh, beyond within half a step. TY_BAD_INPUT
 // for an empty mesh or more than 2^27 nodes, TY_NO_MEMORY; *out is zeroed then. Any thread.
 TY_CHECKED ty_status ty_voxels_from_mesh(const ty_mesh* mesh, float step, float margin, ty_voxels* out,
                                          ty_error* error);
