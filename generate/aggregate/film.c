@@ -1,26 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
-// The film of a pile as it settles: the same instances in every frame, each where it is by then.
+// The film of a pile as it is poured, pressed or settles: the same instances in every frame, each where it is by then.
 #include "kit.h"
+
+#define CHECK_TIME 0.02f // s, between two looks whether it is at rest
+#define WAITING 1e-3f    // size of an element that has not been poured yet: too small to be seen
+
+enum
+{
+    QUIET_CHECKS = 3
+};
 
 typedef struct film
 {
     kit* k;
     ty_aggregate* first; // the fill before it moves: prototypes, ids and attributes of every frame
+    int count;           // of bodies, those that wait too
+    ty_body* bodies;     // [count] of the frame
+    ty_affine* frames;   // [count] the same, of a pile that is bent
     ty_yolk* yolks;      // [count]
     ty_vec3* before;     // [count] velocities a substep ago
+    float* poured;       // the attribute, of a film of pouring; else NULL
+    ty_xpbd* soft;       // while it is pressed; else NULL
+    int64_t step;
+    int calm; // looks in a row
 } film;
+
+// --- one moment ---
+
+static void bodies_place(film* f)
+{
+    const ty_pile* pile = f->k->pile;
+    int count = ty_pile_count(pile);
+    for (int i = 0; i < f->count; i++)
+        if (i < count)
+        {
+            f->bodies[i] = ty_pile_bodies(pile)[i];
+            f->frames[i] = ty_pile_frame(pile, i);
+        }
+        else
+        {
+            f->bodies[i] = f->k->pour.bodies[i];
+            f->bodies[i].scale *= WAITING;
+        }
+}
 
 static ty_status film_show(film* f, int frame, const ty_aggregate_sink* sink, ty_error* error)
 {
     kit* k = f->k;
     ty_pile_metrics metrics;
+    if (f->soft)
+        kit_soft_take(k, f->soft, true);
     ty_pile_measure(k->pile, &metrics, NULL);
+    if (f->soft)
+        ty_xpbd_speeds(f->soft, &metrics.speed_rms, &metrics.speed_max);
+    k->rest = f->calm >= QUIET_CHECKS;
+    k->stood = kit_top(k);
     ty_aggregate shown = *f->first; // lends what does not change; its own transforms are moved along
     shown.recipe = shown.hash = NULL;
     shown.metrics = kit_metrics(k, &metrics);
-    mixture_move(&k->mix, k->recipe->seed, ty_pile_bodies(k->pile), f->yolks, (uint32_t)ty_pile_count(k->pile), &shown);
+    bodies_place(f);
+    mixture_move(&k->mix, k->recipe->seed, f->bodies, ty_pile_is_bent(k->pile) ? f->frames : NULL, f->yolks,
+                 (uint32_t)f->count, &shown);
     f->first->velocities = shown.velocities; // made by the first frame
     f->first->spins = shown.spins;
+    for (uint32_t i = 0; i < shown.instance_count && f->poured; i++)
+        f->poured[i] = ty_length(shown.transforms[i].x) > 10.0f * WAITING ? 1.0f : 0.0f;
     ty_status status = sink->put(sink->context, frame, &shown, error);
     ty_free(shown.metrics);
     ty_free(shown.recipe);
@@ -28,12 +72,12 @@ static ty_status film_show(film* f, int frame, const ty_aggregate_sink* sink, ty
     return status;
 }
 
-// One substep of the pile, and of the yolks within the eggs.
-static void film_step(film* f)
+// --- what happens between two ---
+
+static void yolks_step(film* f)
 {
     kit* k = f->k;
     float gravity = ty_length(ty_pile_gravity(k->pile));
-    ty_pile_step(k->pile, k->workers);
     const ty_body* bodies = ty_pile_bodies(k->pile);
     float seconds = 1.0f / k->recipe->settle.rate;
     for (int i = 0; i < ty_pile_count(k->pile); i++)
@@ -48,40 +92,107 @@ static void film_step(film* f)
     }
 }
 
+static void film_look(film* f)
+{
+    bool pouring = f->k->pour.poured < f->k->pour.count;
+    f->calm = !f->soft && !pouring && ty_pile_is_calm(f->k->pile) ? f->calm + 1 : 0;
+}
+
+static ty_status film_step(film* f, ty_error* error)
+{
+    kit* k = f->k;
+    ty_status status = TY_OK;
+    if (f->soft)
+    {
+        kit_press_step(k, f->soft, (int)f->step);
+        if (f->step + 1 == kit_press_steps(k))
+        {
+            kit_soft_take(k, f->soft, true);
+            ty_xpbd_destroy(f->soft);
+            f->soft = NULL;
+            status = kit_release(k, error);
+        }
+    }
+    else
+    {
+        if (k->pour.bodies)
+            kit_pour_due(k);
+        ty_pile_step(k->pile, k->workers);
+        yolks_step(f);
+    }
+    f->step++;
+    if (f->step % (int)(CHECK_TIME * k->recipe->settle.rate + 0.5f) == 0)
+        film_look(f);
+    return status;
+}
+
 static ty_status film_run(film* f, const ty_aggregate_sink* sink, ty_error* error)
 {
     const ty_animate_def* animate = &f->k->recipe->animate;
     double rate = (double)f->k->recipe->settle.rate / (double)animate->fps;
-    int64_t step = 0;
     ty_status status = TY_OK;
     for (int frame = 1; frame <= animate->frames && status == TY_OK; frame++)
     {
-        for (int64_t until = (int64_t)((frame - 1) * rate + 0.5); step < until && !ty_cancel_requested(); step++)
-            film_step(f);
-        status = ty_cancel_requested() ? ty_error_set(error, TY_INTERRUPTED, "interrupted before frame %d", frame)
-                                       : film_show(f, frame, sink, error);
+        int64_t until = (int64_t)((frame - 1) * rate + 0.5);
+        while (f->step < until && status == TY_OK && !ty_cancel_requested())
+            status = film_step(f, error);
+        if (status == TY_OK)
+            status = ty_cancel_requested() ? ty_error_set(error, TY_INTERRUPTED, "interrupted before frame %d", frame)
+                                           : film_show(f, frame, sink, error);
     }
     return status;
 }
 
-ty_status kit_film(kit* k, const ty_aggregate_sink* sink, ty_error* error)
+// What is pressed lies already, but in a mould, where the press packs it; a mould that does not press is off at once.
+static ty_status film_begin(film* f, ty_error* error)
 {
-    if (k->recipe->settle.solver == TY_SOLVER_XPBD || k->recipe->press.strain > 0.0f)
-        return ty_error_set(error, TY_BAD_INPUT,
-                            "animate.frames: a film shows how rigid grains settle: take solver impulse and no press");
+    kit* k = f->k;
+    const ty_press_def* press = &k->recipe->press;
     ty_status status = kit_pile(k, error);
     if (status == TY_OK)
         status = kit_fill(k, error);
-    film f = {.k = k};
+    if (status == TY_OK && kit_stands(k) && !(recipe_is_mould(k->recipe) && press->strain > 0.0f))
+        status = kit_rest(k, error);
     ty_pile_metrics metrics = {0};
     if (status == TY_OK)
-        status = kit_write(k, &metrics, &f.first, error);
+        status = kit_write(k, &metrics, &f->first, error);
+    if (status != TY_OK)
+        return status;
+    f->count = k->pour.bodies ? k->pour.count : ty_pile_count(k->pile);
+    f->bodies = TY_ALLOC(ty_body, f->count);
+    f->frames = TY_ALLOC(ty_affine, f->count);
+    f->yolks = TY_ALLOC(ty_yolk, f->count); // in the middle
+    f->before = TY_ALLOC(ty_vec3, f->count);
+    if (k->pour.bodies)
+        f->poured = ty_aggregate_add_attribute(f->first, "poured");
+    if (press->strain > 0.0f)
+        f->soft = kit_soft(k);
+    else if (recipe_is_mould(k->recipe))
+        return kit_release(k, error);
+    return TY_OK;
+}
+
+static ty_status film_check(const ty_aggregate_recipe* r, ty_error* error)
+{
+    if (r->settle.solver == TY_SOLVER_XPBD)
+        return ty_error_set(error, TY_BAD_INPUT,
+                            "animate.frames: a film shows how rigid grains settle: take solver impulse");
+    if (r->fill.start == TY_FILL_POUR && r->press.strain > 0.0f)
+        return ty_error_set(error, TY_BAD_INPUT, "animate.frames: a film shows pouring or pressing, not both");
+    return TY_OK;
+}
+
+ty_status kit_film(kit* k, const ty_aggregate_sink* sink, ty_error* error)
+{
+    film f = {.k = k};
+    ty_status status = film_check(k->recipe, error);
     if (status == TY_OK)
-    {
-        f.yolks = TY_ALLOC(ty_yolk, ty_pile_count(k->pile)); // in the middle
-        f.before = TY_ALLOC(ty_vec3, ty_pile_count(k->pile));
+        status = film_begin(&f, error);
+    if (status == TY_OK)
         status = film_run(&f, sink, error);
-    }
+    ty_xpbd_destroy(f.soft);
+    ty_free(f.bodies);
+    ty_free(f.frames);
     ty_free(f.yolks);
     ty_free(f.before);
     ty_aggregate_destroy(f.first);

@@ -3,6 +3,17 @@
 #pragma once
 #include "fill.h"
 #include "mixture.h"
+#include <tsuya/generate/xpbd.h>
+
+// What has left the mouth so far, and what is to come, in order.
+typedef struct pour
+{
+    ty_body* bodies; // [count]; NULL = nothing is poured
+    int count, poured;
+    int64_t steps; // of the pile since it began
+    float rate;    // 1/s
+    ty_vec3 from;
+} pour;
 
 typedef struct kit
 {
@@ -18,6 +29,7 @@ typedef struct kit
     ty_container* ground; // what a mould leaves the pile on; else NULL
     ty_fill_top top;
     ty_pile* pile;
+    pour pour;
     ty_rng rng;
     int count; // of grains, once filled
     int lost, replaced;
@@ -27,6 +39,7 @@ typedef struct kit
     float drift_mean, drift_max; // of the width, while it was watched
     float start_repeat;
     bool rest;
+    float press_top;       // m, where the lid begins
     float released, stood; // m, the topmost element over the plane below, of a mould that is taken off: then, at rest
 } kit;
 
@@ -35,6 +48,8 @@ typedef struct kit
 ty_body kit_body(kit* k, ty_vec3 position, float steepest);
 // Elements, container, and a pile of them without a body.
 TY_CHECKED ty_status kit_pile(kit* k, ty_error* error);
+// Settles; drops a new element for each that is lost over the rim.
+TY_CHECKED ty_status kit_rest(kit* k, ty_error* error);
 TY_CHECKED ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error);
 
 // film.c
@@ -51,6 +66,11 @@ void kit_drop(kit* k, int count); // grains fall onto the pile: in layers over i
 // The count that fill asks for in the space that is left over what lies; place is before "fill." in the recipe.
 TY_CHECKED ty_status kit_count(kit* k, const char* place, float inset, int* out, ty_error* error);
 
+// make_pour.c
+TY_CHECKED ty_status kit_pour_begin(kit* k, ty_error* error); // draws all elements; none has left yet
+void kit_pour_due(kit* k);                                    // once before each substep: lets those go that are due
+TY_CHECKED ty_status kit_pour(kit* k, ty_error* error);       // until all have left
+
 // make_layers.c
 TY_CHECKED ty_status layers_check(const ty_aggregate_recipe* r, ty_error* error);
 // Selects the layer and lets it fall onto the pile.
@@ -60,11 +80,19 @@ void kit_refill(kit* k);
 
 // xpbd_settle.c: settles or presses the pile as elastic bodies for the recipe's time; the pile's bodies are then where
 // they are, and bent.
+ty_xpbd* kit_soft(kit* k); // the pile's bodies as elastic ones; the caller's
+int kit_press_steps(const kit* k);
+void kit_press_step(kit* k, ty_xpbd* x, int step); // from 0
+// The pile's bodies where the elastic ones are, and bent as they are; without those that left an open container, or
+// all.
+void kit_soft_take(kit* k, const ty_xpbd* x, bool all);
 TY_CHECKED ty_status kit_soften(kit* k, ty_pile_metrics* metrics, ty_error* error);
 
 // make_stand.c
 TY_CHECKED ty_status press_check(const ty_aggregate_recipe* r, ty_error* error);
 bool recipe_is_mould(const ty_aggregate_recipe* r);
 bool kit_stands(const kit* k); // it ends standing by itself: pressed, moulded, or elastic and to come to rest
-// Takes the mould off, if there is one, and lets the pile come to rest as it is: nothing is put anew or stirred.
+float kit_top(const kit* k);   // m, of the topmost centre over the lowest point of the container
+TY_CHECKED ty_status kit_release(kit* k, ty_error* error); // takes the mould off, if there is one that goes
+// Does that, and lets the pile come to rest as it is: nothing is put anew or stirred.
 TY_CHECKED ty_status kit_stand(kit* k, ty_pile_metrics* metrics, ty_error* error);

@@ -77,8 +77,7 @@ static ty_status container_check(const kit* k, ty_error* error)
 
 // --- adjust ---
 
-// Settles; drops a new grain for each that is lost over the rim.
-static ty_status pile_rest(kit* k, ty_error* error)
+ty_status kit_rest(kit* k, ty_error* error)
 {
     int allowed = 20 + k->count / 4;
     ty_pile_end end = TY_PILE_LOST;
@@ -136,7 +135,7 @@ static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
     ty_status status = TY_OK;
     for (int round = 0; status == TY_OK; round++)
     {
-        status = pile_rest(k, error);
+        status = kit_rest(k, error);
         if (status != TY_OK)
             break;
         memcpy(kept, ty_pile_bodies(k->pile), (size_t)count * sizeof *kept);
@@ -172,15 +171,16 @@ static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
 #define WET_SPREAD 0.06f // of the water: what the attribute moisture of 1 is
 
 // Chance and drying in one number: mean about 0, within -1..1, less at the surface.
-static void attributes_write(const kit* k, const uint32_t* owners, ty_aggregate* out)
+static void attributes_write(const kit* k, uint32_t count, const uint32_t* owners, ty_aggregate* out)
 {
     float* moisture = ty_aggregate_add_attribute(out, "moisture");
     float* tint = ty_aggregate_add_attribute(out, "tint");
     float* depth = ty_aggregate_add_attribute(out, "depth");
     float* wet_basis = k->mechanics.given ? ty_aggregate_add_attribute(out, "wet_basis") : NULL;
+    for (uint32_t i = 0; i < count; i++)
+        depth[i] = 1.05f * k->mix.length; // of those that are poured yet: as wet as the mean
     ty_pile_depth(k->pile, depth);
     const ty_wetness_def* wet = &k->recipe->moisture;
-    uint32_t count = (uint32_t)ty_pile_count(k->pile);
     for (uint32_t i = 0; i < count; i++)
     {
         ty_rng rng = ty_rng_make(k->recipe->seed, 0x6d6f6973, i);
@@ -201,9 +201,10 @@ static void attributes_write(const kit* k, const uint32_t* owners, ty_aggregate*
 
 ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error)
 {
-    mixture_select(&k->mix, 0); // what is relative to a size is so to that of the lowest layer
-    uint32_t count = (uint32_t)ty_pile_count(k->pile);
-    const ty_body* bodies = ty_pile_bodies(k->pile);
+    mixture_select(&k->mix, 0);                  // what is relative to a size is so to that of the lowest layer
+    bool waits = k->pour.poured < k->pour.count; // a film of it begins: there are as many in all its files
+    uint32_t count = (uint32_t)(waits ? k->pour.count : ty_pile_count(k->pile));
+    const ty_body* bodies = waits ? k->pour.bodies : ty_pile_bodies(k->pile);
     ty_affine* frames = ty_pile_is_bent(k->pile) ? TY_TRY_ALLOC(ty_affine, count) : NULL;
     for (uint32_t i = 0; i < count && frames; i++)
         frames[i] = ty_pile_frame(k->pile, (int)i);
@@ -214,7 +215,7 @@ ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, 
     ty_free(frames);
     if (!a)
         return ty_error_set(error, TY_NO_MEMORY, "no memory for %u grains", count);
-    attributes_write(k, owners, a);
+    attributes_write(k, count, owners, a);
     ty_free(owners);
     a->metrics = kit_metrics(k, metrics);
     *out = a;
@@ -278,7 +279,7 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
     bool elastic = k->recipe->settle.solver == TY_SOLVER_XPBD;
     for (int layer = 1; layer <= k->recipe->layers.count && status == TY_OK; layer++)
     {
-        status = pile_rest(k, error); // what lies below
+        status = kit_rest(k, error); // what lies below
         if (status == TY_OK)
             status = kit_layer(k, layer, error);
     }
@@ -288,7 +289,7 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
         if (!kit_stands(k))
             status = pile_finish(k, &metrics, error);
         else if (!moulded)
-            status = pile_rest(k, error);
+            status = kit_rest(k, error);
     }
     if (status == TY_OK && (elastic || k->recipe->press.strain > 0.0f))
         status = kit_soften(k, &metrics, error);
@@ -328,6 +329,7 @@ static ty_status recipe_make(const void* def, ty_workers* workers, ty_aggregate*
     k->workers = workers;
     k->rng = ty_rng_make(recipe.seed, 0x626f6479, 0);
     status = sink ? kit_film(k, sink, error) : kit_make(k, out, error);
+    ty_free(k->pour.bodies);
     ty_pile_destroy(k->pile);
     ty_container_destroy(k->container);
     ty_container_destroy(k->ground);

@@ -162,6 +162,14 @@ ty_status kit_fill(kit* k, ty_error* error)
     if (status != TY_OK)
         return ty_error_set(error, status, "fill.count: %d grains at a density of %g; the container holds at most %d",
                             k->count, (double)fill->density, (int)(capacity / volume * (double)k->count));
+    if (fill->start == TY_FILL_POUR)
+    {
+        k->wanted[0] = count;
+        k->spread = volume;
+        status = kit_pour_begin(k, error);
+        bool in_film = k->recipe->animate.frames > 0; // which pours as it goes
+        return status == TY_OK && !in_film ? kit_pour(k, error) : status;
+    }
     status = kit_start(k, count, volume, inset, error);
     if (status != TY_OK)
         return status;

@@ -71,7 +71,7 @@ static char* mechanics_write(const kit* k)
 
 char* kit_metrics(const kit* k, const ty_pile_metrics* m)
 {
-    static const char* const starts[] = {"inflate", "thesis", "lattice"};
+    static const char* const starts[] = {"inflate", "thesis", "lattice", "pour"};
     float repeat = ty_pile_repeat(ty_pile_bodies(k->pile), ty_pile_count(k->pile), k->mix.width);
     const ty_pile_metrics* settled = k->settled.count > 0 ? &k->settled : m;
     char *drift = drift_write(k), *mould = mould_write(k), *mechanics = mechanics_write(k);

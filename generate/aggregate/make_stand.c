@@ -27,9 +27,20 @@ bool kit_stands(const kit* k)
     return recipe_is_mould(r) || (elastic ? r->settle.rest : r->press.strain > 0.0f);
 }
 
-// The plane at the mould's lowest point takes its place.
-static ty_status mould_release(kit* k, ty_error* error)
+float kit_top(const kit* k)
 {
+    float top = 0.0f, low = ty_container_interior(k->container).low.y;
+    for (int i = 0; i < ty_pile_count(k->pile); i++)
+        top = ty_max(top, ty_pile_bodies(k->pile)[i].position.y - low);
+    return top;
+}
+
+// The plane at the mould's lowest point takes its place.
+ty_status kit_release(kit* k, ty_error* error)
+{
+    k->released = kit_top(k);
+    if (!recipe_is_mould(k->recipe) || !k->recipe->press.release)
+        return TY_OK;
     ty_bounds inside = ty_container_interior(k->container);
     ty_vec3 size = ty_sub(inside.high, inside.low);
     ty_container_def def = ty_container_def_default();
@@ -40,15 +51,6 @@ static ty_status mould_release(kit* k, ty_error* error)
     if (status == TY_OK)
         ty_pile_set_container(k->pile, k->ground);
     return status;
-}
-
-// m, of the topmost centre over the lowest point of the container.
-static float top_of(const kit* k)
-{
-    float top = 0.0f, low = ty_container_interior(k->container).low.y;
-    for (int i = 0; i < ty_pile_count(k->pile); i++)
-        top = ty_max(top, ty_pile_bodies(k->pile)[i].position.y - low);
-    return top;
 }
 
 static ty_status stand_settle(kit* k, ty_error* error)
@@ -68,15 +70,12 @@ static ty_status stand_settle(kit* k, ty_error* error)
 ty_status kit_stand(kit* k, ty_pile_metrics* metrics, ty_error* error)
 {
     double start = ty_time_now();
-    ty_status status = TY_OK;
-    k->released = top_of(k);
-    if (recipe_is_mould(k->recipe) && k->recipe->press.release)
-        status = mould_release(k, error);
+    ty_status status = kit_release(k, error);
     if (status == TY_OK)
         status = stand_settle(k, error);
     if (status != TY_OK)
         return status;
-    k->stood = top_of(k);
+    k->stood = kit_top(k);
     ty_log(TY_LOG_INFO, "aggregate: stands by itself after %.1f s, top element %.1f mm high, %.1f before",
            ty_time_now() - start, (double)k->stood * 1e3, (double)k->released * 1e3);
     int count = ty_pile_count(k->pile);

@@ -81,6 +81,9 @@ static void pair_measure(const ty_pile* pile, const pair* p, support* supports, 
 
 void ty_pile_measure(ty_pile* pile, ty_pile_metrics* out, bool* held)
 {
+    *out = (ty_pile_metrics){.substeps = pile->substeps};
+    if (pile->count == 0)
+        return;
     pile_refresh_all(pile);
     if (pile_moved(pile))
         pile_detect(pile, pile->margin, NULL);

@@ -267,8 +267,8 @@ ty_aggregate* mixture_write(mixture* m, ty_seed seed, const ty_body* bodies, con
 }
 
 // The shells of eggs are shown upright, whatever way they have rolled.
-void mixture_move(const mixture* m, ty_seed seed, const ty_body* bodies, const ty_yolk* yolks, uint32_t count,
-                  ty_aggregate* out)
+void mixture_move(const mixture* m, ty_seed seed, const ty_body* bodies, const ty_affine* frames, const ty_yolk* yolks,
+                  uint32_t count, ty_aggregate* out)
 {
     ty_vec3 *velocities = ty_aggregate_add_velocities(out), *spins = ty_aggregate_add_spins(out);
     uint32_t eggs = count_eggs(m, bodies, count), egg = 0;
@@ -283,6 +283,8 @@ void mixture_move(const mixture* m, ty_seed seed, const ty_body* bodies, const t
             velocities[at[k]] = bodies[i].velocity;
             spins[at[k]] = parts > 1 ? (ty_vec3){0, 0, 0} : bodies[i].spin;
         }
+        if (frames && parts == 1)
+            out->transforms[i] = frames[i];
         if (parts > 1)
             velocities[at[2]] = ty_add(bodies[i].velocity, yolks[i].speed);
         egg += parts > 1;

@@ -15,7 +15,8 @@ ty_aggregate_recipe ty_aggregate_recipe_default(void)
                  .roll = TY_PI,
                  .sprinkle = 0.06f,
                  .sweeps = 200,
-                 .thesis = {.refine = 1.0f, .offset = 0.0f, .remove = 1.0f}},
+                 .thesis = {.refine = 1.0f, .offset = 0.0f, .remove = 1.0f},
+                 .pour = {.radius = 0.015f, .rate = 500.0f, .speed = 0.5f}},
         .settle = {.friction = pile.friction,
                    .rolling = pile.rolling,
                    .max_seconds = 3.0f,
@@ -33,7 +34,7 @@ ty_aggregate_recipe ty_aggregate_recipe_default(void)
 
 // --- fill and layers ---
 
-static const char* const fill_starts[] = {"inflate", "thesis", "lattice", NULL};
+static const char* const fill_starts[] = {"inflate", "thesis", "lattice", "pour", NULL};
 static const char* const fill_targets[] = {"count", "level", "density", NULL};
 
 static void thesis_set_default(void* def)
@@ -57,6 +58,30 @@ static const ty_param_table thesis_table = {"aggregate.fill.thesis",
                                             thesis_rows,
                                             TY_PARAM_COUNT(thesis_rows)};
 
+static void pour_set_default(void* def)
+{
+    *(ty_pour_def*)def = ty_aggregate_recipe_default().fill.pour;
+}
+
+#define OWNER ty_pour_def
+static const ty_param pour_rows[] = {
+    FIELD("from", TY_PARAM_FLOAT3, "m", -1e4, 1e4, from,
+          "middle of the mouth; [0, 0, 0]: 0.06 over the middle of the rim, or of the heap"),
+    FIELD("radius", TY_PARAM_FLOAT, "mm", 0, 1e6, radius, "of the mouth"),
+    FIELD("rate", TY_PARAM_FLOAT, "1/s", 0.1, 1e6, rate, "elements a second, as far as the mouth lets them through"),
+    FIELD("seconds", TY_PARAM_FLOAT, "s", 0, 600, seconds, "for all of them, in place of a rate; 0 = by the rate"),
+    FIELD("speed", TY_PARAM_FLOAT, "m/s", 0, 20, speed, "downwards at the mouth"),
+};
+#undef OWNER
+
+static const ty_param_table pour_table = {
+    "aggregate.fill.pour",
+    "Elements fall out of a round mouth, one after the other, into an open container.",
+    sizeof(ty_pour_def),
+    pour_set_default,
+    pour_rows,
+    TY_PARAM_COUNT(pour_rows)};
+
 static void fill_set_default(void* def)
 {
     *(ty_fill_def*)def = ty_aggregate_recipe_default().fill;
@@ -65,7 +90,8 @@ static void fill_set_default(void* def)
 #define OWNER ty_fill_def
 static const ty_param fill_rows[] = {
     {"start", TY_PARAM_ENUM, "", 0, 0, fill_starts, NULL, offsetof(OWNER, start),
-     "how the elements are placed: grown in place; moved and taken out by the cost of Gan 2023; in a lattice", false},
+     "how the elements are placed: grown in place; moved and taken out by the cost of Gan 2023; in a lattice; poured",
+     false},
     {"target", TY_PARAM_ENUM, "", 0, 0, fill_targets, NULL, offsetof(OWNER, target),
      "what is asked for: a count; or a level or a density, which give the count", false},
     FIELD("count", TY_PARAM_INT, "", 1, TY_FILL_MOST, count, "grains in the result, with target count"),
@@ -79,6 +105,7 @@ static const ty_param fill_rows[] = {
           "share of the grains that fall onto an open pile from above"),
     FIELD("sweeps", TY_PARAM_INT, "", 50, 5000, sweeps, "of the inflation"),
     {"thesis", TY_PARAM_GROUP, "", 0, 0, NULL, &thesis_table, offsetof(OWNER, thesis), "with start thesis", false},
+    {"pour", TY_PARAM_GROUP, "", 0, 0, NULL, &pour_table, offsetof(OWNER, pour), "with start pour", false},
 };
 #undef OWNER
 

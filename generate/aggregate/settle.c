@@ -384,13 +384,18 @@ static void all_wake(ty_pile* pile)
             body_wake(pile, i);
 }
 
+bool ty_pile_is_calm(const ty_pile* pile)
+{
+    float rms, largest;
+    pile_speeds(pile, &rms, &largest);
+    return rms < QUIET_RMS && largest < QUIET_MAX && pile->time > QUIET_AFTER;
+}
+
 // One check: counts calm ones in a row. While few bodies move the others may sleep; when all do, or none moves for
 // long, everybody wakes and the count begins again: rest is found with all of them awake.
 static void rest_check(ty_pile* pile, int* calm)
 {
-    float rms, largest;
-    pile_speeds(pile, &rms, &largest);
-    bool is_calm = rms < QUIET_RMS && largest < QUIET_MAX && pile->time > QUIET_AFTER;
+    bool is_calm = ty_pile_is_calm(pile);
     int sleepers = sleepers_count(pile);
     *calm = is_calm ? *calm + 1 : 0;
     if (sleepers > 0 && (sleepers == pile->count || *calm >= QUIET_CHECKS))

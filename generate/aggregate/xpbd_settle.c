@@ -3,7 +3,6 @@
 #include "kit.h"
 #include <string.h>
 #include <tsuya/base/log.h>
-#include <tsuya/generate/xpbd.h>
 
 // Share of the press's depth at a share of its time: down, held, up again, and left alone; a mould stays where it is
 // until it is taken off.
@@ -37,20 +36,36 @@ static void press_place(ty_xpbd* x, const kit* k, float top, float t)
         ty_xpbd_squeeze(x, ty_vec3_make(middle.x, inside.low.y, middle.z), ty_vec3_make(1.0f, share, 1.0f));
 }
 
-static void run(ty_xpbd* x, const kit* k, float seconds, bool press)
+ty_xpbd* kit_soft(kit* k)
 {
-    float top = top_of(x, k);
-    int steps = (int)(seconds * k->recipe->settle.rate);
-    for (int i = 0; i < steps && !ty_cancel_requested(); i++)
+    ty_xpbd_def def = ty_xpbd_def_default();
+    def.rate = k->recipe->settle.rate;
+    def.friction = k->recipe->settle.friction;
+    def.modulus = k->mechanics.modulus;
+    def.bridge = k->mechanics.bridge;
+    def.container = k->container;
+    ty_xpbd* x = ty_xpbd_create(&def);
+    for (int i = 0; i < ty_pile_count(k->pile); i++)
     {
-        if (press)
-            press_place(x, k, top, (float)(i + 1) / (float)steps);
-        ty_xpbd_step(x, k->workers);
+        const ty_body* body = &ty_pile_bodies(k->pile)[i];
+        ty_xpbd_add_element(x, &k->mix.grains[body->grain], body);
     }
+    k->press_top = top_of(x, k);
+    return x;
 }
 
-// Bodies where they are now, bent as they are now; without those that left the container.
-static void bodies_take(kit* k, const ty_xpbd* x)
+int kit_press_steps(const kit* k)
+{
+    return (int)(k->recipe->press.seconds * k->recipe->settle.rate);
+}
+
+void kit_press_step(kit* k, ty_xpbd* x, int step)
+{
+    press_place(x, k, k->press_top, (float)(step + 1) / (float)kit_press_steps(k));
+    ty_xpbd_step(x, k->workers);
+}
+
+void kit_soft_take(kit* k, const ty_xpbd* x, bool all)
 {
     int count = ty_pile_count(k->pile), lost = 0;
     ty_body* bodies = TY_ALLOC(ty_body, count);
@@ -65,7 +80,7 @@ static void bodies_take(kit* k, const ty_xpbd* x)
         bends[i] = ty_affine_from_trs(ty_vec3_make(0.0f, 0.0f, 0.0f), back, ty_vec3_make(size, size, size));
         bends[i] = ty_affine_multiply(&bends[i], &frame);
         bodies[i].position = frame.t;
-        gone[i] = ty_container_is_open(k->container) && ty_container_lost(k->container, bodies[i].position);
+        gone[i] = !all && ty_container_is_open(k->container) && ty_container_lost(k->container, bodies[i].position);
         lost += gone[i];
     }
     ty_pile_set_bodies(k->pile, bodies);
@@ -83,24 +98,15 @@ static void bodies_take(kit* k, const ty_xpbd* x)
 ty_status kit_soften(kit* k, ty_pile_metrics* metrics, ty_error* error)
 {
     const ty_settle_def* settle = &k->recipe->settle;
-    const ty_press_def* press = &k->recipe->press;
-    ty_xpbd_def def = ty_xpbd_def_default();
-    def.rate = settle->rate;
-    def.friction = settle->friction;
-    def.modulus = k->mechanics.modulus;
-    def.bridge = k->mechanics.bridge;
-    def.container = k->container;
-    ty_xpbd* x = ty_xpbd_create(&def);
-    for (int i = 0; i < ty_pile_count(k->pile); i++)
-    {
-        const ty_body* body = &ty_pile_bodies(k->pile)[i];
-        ty_xpbd_add_element(x, &k->mix.grains[body->grain], body);
-    }
-    if (settle->solver == TY_SOLVER_XPBD)
-        run(x, k, settle->max_seconds, false);
-    if (press->strain > 0.0f)
-        run(x, k, press->seconds, true);
-    bodies_take(k, x);
+    ty_xpbd* x = kit_soft(k);
+    int steps = settle->solver == TY_SOLVER_XPBD ? (int)(settle->max_seconds * settle->rate) : 0;
+    for (int i = 0; i < steps && !ty_cancel_requested(); i++)
+        ty_xpbd_step(x, k->workers);
+    steps = k->recipe->press.strain > 0.0f ? kit_press_steps(k) : 0;
+    k->press_top = top_of(x, k);
+    for (int i = 0; i < steps && !ty_cancel_requested(); i++)
+        kit_press_step(k, x, i);
+    kit_soft_take(k, x, false);
     ty_pile_measure(k->pile, metrics, NULL);
     ty_xpbd_speeds(x, &metrics->speed_rms, &metrics->speed_max);
     k->settled = *metrics;

@@ -15,6 +15,7 @@ typedef enum ty_fill_start
     TY_FILL_INFLATE, // grow from half the size at even distances, pushing each other apart
     TY_FILL_THESIS,  // Gan 2023: moved inwards to where a cost of overlap is least, or taken out
     TY_FILL_LATTICE, // rows of elements that all lie alike: the start of a full simulation
+    TY_FILL_POUR,    // falls out of a mouth, element by element
 } ty_fill_start;
 
 typedef enum ty_fill_target
@@ -32,6 +33,15 @@ typedef struct ty_thesis_def
     float remove; // D, of the farthest move: 1 takes out all that overlap, more lets some overlap stay, 0..100
 } ty_thesis_def;
 
+typedef struct ty_pour_def
+{
+    ty_vec3 from;  // m, middle of the mouth; all 0 = .06 m over the middle of the rim, or of the heap
+    float radius;  // m, of the mouth
+    float rate;    // elements a second
+    float seconds; // for all of them, in place of a rate; 0 = by the rate
+    float speed;   // m/s downwards at the mouth
+} ty_pour_def;
+
 typedef struct ty_fill_def
 {
     int start;      // ty_fill_start
@@ -45,6 +55,7 @@ typedef struct ty_fill_def
     float sprinkle; // share of the grains that fall onto an open pile from above, 0..0.5
     int sweeps;     // of the inflation, 50..5000
     ty_thesis_def thesis;
+    ty_pour_def pour;
 } ty_fill_def;
 
 // What comes onto a pile that is at rest already: its elements fall from above, then all settle again. Of fill: target,

@@ -99,6 +99,10 @@ ty_vec3 ty_pile_gravity(const ty_pile* pile); // m/s^2, as it pulls by now: it c
 // without bias ("relax", Catto's soft step), friction, rolling resistance. Equal bits for any worker count.
 void ty_pile_step(ty_pile* pile, ty_workers* workers);
 
+// Speeds are below the bounds of rest: rms of the balls < .3 mm/s, none at 1.7 mm/s. Three times in a row, 20 ms apart,
+// that is rest.
+bool ty_pile_is_calm(const ty_pile* pile);
+
 typedef enum ty_pile_end
 {
     TY_PILE_REST,     // three checks in a row below the bounds
