@@ -247,19 +247,10 @@ static void candidates_find(ty_pile* pile, ty_workers* workers)
 
 // --- colours ---
 
-// And places for the contacts of each pair, in the order in which they are worked off.
 static void pairs_order(ty_pile* pile)
 {
     list_reserve((void**)&pile->order, &pile->order_capacity, pile->pair_count, sizeof(int));
     pairs_color(pile->pairs, sizeof *pile->pairs, pile->pair_count, pile->count, pile->order, pile->color_first);
-    int slot = 0;
-    for (int i = 0; i < pile->pair_count; i++)
-    {
-        pair* p = &pile->pairs[pile->order[i]];
-        p->slot = slot;
-        slot += p->count + pile->cohesive;
-    }
-    list_reserve((void**)&pile->contacts, &pile->contact_capacity, slot, sizeof(contact));
 }
 
 static void lists_swap(ty_pile* pile)

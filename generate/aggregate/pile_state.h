@@ -29,6 +29,7 @@ typedef struct motion
 typedef struct touch
 {
     uint8_t a, b;
+    bool near;            // a contact of this substep
     float normal_impulse; // kept across substeps
     ty_vec3 tangent_impulse;
 } touch;
@@ -37,7 +38,7 @@ typedef struct pair
 {
     int a, b; // bodies, a < b; b = PILE_WALL
     int first, count;
-    int slot;     // of its contacts
+    int slot;     // of its contacts in this substep
     int active;   // contacts in this substep; behind them the pull, if there is one
     bool bridged; // by liquid, since they touched
     bool pulled;  // in this substep

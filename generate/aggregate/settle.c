@@ -81,9 +81,9 @@ static bool is_still(const ty_pile* pile, int body)
     return body < 0 || pile->motions[body].asleep;
 }
 
-static void pair_prepare(ty_pile* pile, pair* p)
+// Which touches of a pair are contacts of this substep. The others lose their impulses.
+static void pair_look(ty_pile* pile, pair* p)
 {
-    bool touching = false;
     p->active = 0;
     p->pulled = false;
     if (is_still(pile, p->a) && is_still(pile, p->b))
@@ -91,22 +91,48 @@ static void pair_prepare(ty_pile* pile, pair* p)
     for (int i = p->first; i < p->first + p->count; i++)
     {
         touch* t = &pile->touches[i];
-        contact* c = &pile->contacts[p->slot + p->active];
-        if (!pile_contact_place(pile, p, t, PILE_TIGHT, c))
+        contact c;
+        t->near = pile_contact_place(pile, p, t, PILE_TIGHT, &c);
+        p->active += t->near;
+        if (!t->near && t->normal_impulse != 0.0f) // most are none: what is not written stays clean in the cache
         {
-            if (t->normal_impulse != 0.0f) // most are none: what is not written stays clean in the cache
-            {
-                t->normal_impulse = 0.0f;
-                t->tangent_impulse = ty_vec3_make(0.0f, 0.0f, 0.0f);
-            }
-            continue;
+            t->normal_impulse = 0.0f;
+            t->tangent_impulse = ty_vec3_make(0.0f, 0.0f, 0.0f);
         }
+    }
+}
+
+// Places for the contacts, one after the other in the order in which they are worked off.
+static void contacts_lay(ty_pile* pile)
+{
+    int slot = 0;
+    for (int i = 0; i < pile->pair_count; i++)
+    {
+        pair* p = &pile->pairs[pile->order[i]];
+        p->slot = slot;
+        slot += p->active + pile->cohesive;
+    }
+    list_reserve((void**)&pile->contacts, &pile->contact_capacity, slot, sizeof(contact));
+}
+
+static void pair_prepare(ty_pile* pile, pair* p)
+{
+    bool touching = false;
+    if (is_still(pile, p->a) && is_still(pile, p->b))
+        return;
+    contact* c = &pile->contacts[p->slot];
+    for (int i = p->first; c < &pile->contacts[p->slot + p->active]; i++)
+    {
+        const touch* t = &pile->touches[i];
+        if (!t->near)
+            continue;
+        pile_contact_place(pile, p, t, 2.0f * PILE_TIGHT, c); // whatever the rounding
         touching |= c->gap <= TOUCHING;
         contact_masses(c, &pile->motions[p->a], p->b >= 0 ? &pile->motions[p->b] : NULL);
         c->normal_impulse = t->normal_impulse;
         c->tangent_impulse = ty_mad(t->tangent_impulse, c->normal, -ty_dot(t->tangent_impulse, c->normal));
         c->touch = i;
-        p->active++;
+        c++;
     }
     if (pile->cohesive)
         pile_bridge_prepare(pile, p, touching);
@@ -342,6 +368,8 @@ void ty_pile_step(ty_pile* pile, ty_workers* workers)
     if (pile_moved(pile))
         pile_detect(pile, pile->margin, workers);
     for_bodies(pile, workers, bodies_accelerate);
+    pile_each(pile, workers, pair_look);
+    contacts_lay(pile);
     pile_each(pile, workers, pair_prepare);
     pile_sweep(pile, workers, pair_warm_start);
     pile_sweep(pile, workers, pair_solve);
