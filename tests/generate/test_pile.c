@@ -46,6 +46,8 @@ static ty_container* box_make(float x, float y, float z)
     return box;
 }
 
+static float rate = 2500.0f; // 1/s
+
 static ty_pile* pile_make(const ty_container* container, float friction)
 {
     ty_pile_def def = ty_pile_def_default();
@@ -53,6 +55,7 @@ static ty_pile* pile_make(const ty_container* container, float friction)
     def.grain_count = VARIANTS;
     def.container = container;
     def.friction = friction;
+    def.rate = rate;
     return ty_pile_create(&def);
 }
 
@@ -271,6 +274,29 @@ static void test_friction_holds_the_pile_open(void** state)
     settled_term(&smooth);
 }
 
+static float mean_height(const settled* s)
+{
+    float sum = 0.0f;
+    for (int i = 0; i < ty_pile_count(s->pile); i++)
+        sum += ty_pile_bodies(s->pile)[i].position.y - ty_container_interior(s->box).low.y;
+    return sum / (float)ty_pile_count(s->pile);
+}
+
+// Twice as many substeps: the pile that comes to rest is as high and as dense.
+static void test_substeps_do_not_matter(void** state)
+{
+    (void)state;
+    settled usual = pile_settled(400, 0.5f, 2.0f, NULL);
+    rate *= 2.0f;
+    settled twice = pile_settled(400, 0.5f, 2.0f, NULL);
+    rate *= 0.5f;
+    assert_true(usual.end == TY_PILE_REST && twice.end == TY_PILE_REST);
+    assert_true(fabsf(mean_height(&twice) / mean_height(&usual) - 1.0f) < 0.02f);
+    assert_true(fabsf(twice.rest.phi / usual.rest.phi - 1.0f) < 0.03f);
+    settled_term(&usual);
+    settled_term(&twice);
+}
+
 static ty_hash state_hash(int count, int thread_count)
 {
     ty_workers* workers = NULL;
@@ -355,6 +381,7 @@ int main(void)
         cmocka_unit_test(test_slope),
         cmocka_unit_test(test_small_pile_rests),
         cmocka_unit_test(test_friction_holds_the_pile_open),
+        cmocka_unit_test(test_substeps_do_not_matter),
         cmocka_unit_test(test_same_bits_for_any_workers),
         cmocka_unit_test(test_removal_keeps_impulses),
         cmocka_unit_test(test_what_floats),
