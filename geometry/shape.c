@@ -8,17 +8,28 @@ ty_shape_def ty_shape_def_default(void)
         .kind = TY_SHAPE_SPHERE,
         .radius = 0.06f,
         .size = {0.05f, 0.05f, 0.05f},
-        .height = 0.06f,
         .tube = 0.02f,
-        .thickness = 0.003f,
-        .foot_radius = 0.024f,
-        .foot_height = 0.007f,
         .curve = 2.8f,
         .rounding = 0.0f,
         .relief = 0.15f,
         .variant = 1,
         .divisions = 64,
     };
+}
+
+static float or_else(float length, double derived)
+{
+    return length == 0.0f ? (float)derived : length;
+}
+
+ty_shape_def ty_shape_def_complete(const ty_shape_def* def)
+{
+    ty_shape_def c = *def;
+    c.height = or_else(c.height, (double)c.radius);
+    c.thickness = or_else(c.thickness, fmin(0.05 * (double)c.radius, 0.1 * (double)c.height));
+    c.foot_radius = or_else(c.foot_radius, 0.4 * (double)c.radius);
+    c.foot_height = or_else(c.foot_height, 7.0 / 60.0 * (double)c.height);
+    return c;
 }
 
 static void set_default(void* def)
@@ -56,11 +67,11 @@ static const ty_param rows[] = {
     LENGTH(radius, "sphere, cylinder, disc, dome, tube; torus: to the tube's centre; bowl: outside of the rim"),
     {"size", TY_PARAM_FLOAT3, "m", 0, 1e4, NULL, NULL, offsetof(ty_shape_def, size),
      "ellipsoid, stone: semi-axes; box, plane: half extents; sweep: half width, wall height, half depth", false},
-    LENGTH(height, "cylinder, bowl, dome"),
+    LENGTH(height, "cylinder, bowl, dome; 0 = the radius"),
     LENGTH(tube, "torus: radius of the tube"),
-    LENGTH(thickness, "bowl: of the wall"),
-    LENGTH(foot_radius, "bowl: outside of the foot ring"),
-    LENGTH(foot_height, "bowl: of the foot ring"),
+    LENGTH(thickness, "bowl: of the wall; 0 = .05 of the radius, at most .1 of the height"),
+    LENGTH(foot_radius, "bowl: outside of the foot ring; 0 = .4 of the radius"),
+    LENGTH(foot_height, "bowl: of the foot ring; 0 = 7/60 of the height"),
     {"curve", TY_PARAM_FLOAT, "", 1, 12, NULL, NULL, offsetof(ty_shape_def, curve),
      "bowl profile: 1 = cone, 2 = parabola, higher = fuller", false},
     LENGTH(rounding, "box, cylinder: radius of the edges; sweep: of the bend"),
@@ -236,8 +247,9 @@ static void build_kind(ty_shape_build* build, const ty_shape_def* def)
     }
 }
 
-ty_status ty_shape_create(const ty_shape_def* def, ty_mesh** out, ty_error* error)
+ty_status ty_shape_create(const ty_shape_def* given, ty_mesh** out, ty_error* error)
 {
+    const ty_shape_def complete = ty_shape_def_complete(given), *def = &complete;
     *out = NULL;
     ty_status status = check_def(def, error);
     if (status != TY_OK)

@@ -55,8 +55,9 @@ static float ellipsoid_distance(ty_vec3 point, ty_vec3 size)
     return (float)(level < 0.0 ? -sqrt(sum) : sqrt(sum));
 }
 
-float ty_shape_interior_distance(const ty_shape_def* def, ty_vec3 p)
+float ty_shape_interior_distance(const ty_shape_def* given, ty_vec3 p)
 {
+    const ty_shape_def complete = ty_shape_def_complete(given), *def = &complete;
     switch ((ty_shape_kind)def->kind)
     {
     case TY_SHAPE_SPHERE:

@@ -200,6 +200,8 @@ ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* 
     ty_aggregate_destroy(made.aggregate);
     ty_mesh_destroy(made.mesh);
     ty_free(text);
+    if (status == TY_BAD_INPUT)
+        ty_error_find_place(error, recipe->node);
     if (written == TY_OK)
         return status;
     *error = write_error;
@@ -221,6 +223,8 @@ static ty_status write_element(const ty_recipe* recipe, int number, const char* 
 {
     ty_mesh* mesh;
     ty_status status = recipe->generator->element(recipe->def, number, &mesh, error);
+    if (status == TY_BAD_INPUT)
+        ty_error_find_place(error, recipe->node);
     if (status != TY_OK)
         return status;
     sign(&mesh->recipe, &mesh->hash, ty_recipe_text(recipe), key);

@@ -186,6 +186,41 @@ static void place_error(ty_error* error, ty_place place, ty_status status, const
                           source->argument ? "%s (in '%s %s')" : "%s", text, source->file, source->argument);
 }
 
+// The place of the key or item that the first word of path names below node, and the node itself; false: there is none.
+static bool step_into(const ty_node** node, const char** path, ty_place* place)
+{
+    char word[TY_TREE_MAX_KEY];
+    size_t length = strspn(*path, "abcdefghijklmnopqrstuvwxyz_0123456789");
+    int index = -1, digits = 0;
+    if (**path == '[' && sscanf(*path, "[%d]%n", &index, &digits) == 1 && digits > 0)
+        length = (size_t)digits;
+    else if (length > 0 && length < sizeof(word))
+    {
+        memcpy(word, *path, length);
+        word[length] = 0;
+        index = ty_node_find(*node, word);
+    }
+    if (index < 0 || (*node)->kind == TY_NODE_SCALAR || index >= (*node)->count)
+        return false;
+    *place = (*node)->kind == TY_NODE_MAP ? (*node)->keys[index].place : (*node)->items[index]->place;
+    *node = (*node)->items[index];
+    *path += length;
+    *path += **path == '.';
+    return true;
+}
+
+void ty_error_find_place(ty_error* error, const ty_node* root)
+{
+    if (error->file[0] || error->line > 0)
+        return;
+    const char* path = error->text;
+    ty_place place = root->place;
+    while (*path && *path != ':' && step_into(&root, &path, &place))
+        ;
+    const ty_error plain = *error;
+    place_error(error, place, plain.status, plain.text);
+}
+
 void ty_report(ty_error_list* errors, ty_place place, ty_status status, const char* format, ...)
 {
     char text[1024];

@@ -80,6 +80,9 @@ bool ty_node_is_empty(const ty_node* node); // nothing written, or an empty mapp
 // "a list of 3", "a mapping", "'text'", "nothing": for messages.
 const char* ty_node_describe(const ty_node* node, char buffer[80]);
 
+// Where the error has no place: that of the key which its text begins with, as in "fill.density: ...", or of as much of
+// it as is written below root.
+void ty_error_find_place(ty_error* error, const ty_node* root);
 // Adds an error at a place. Texts of command line overrides are quoted in full behind the message.
 void ty_report(ty_error_list* errors, ty_place place, ty_status status, const char* format, ...) TY_PRINTF(4, 5);
 // Adds an error of another floor at a place, with what it was about in front.

@@ -295,7 +295,9 @@ static ty_status shape_make(ty_container* c, ty_mesh** mesh, ty_error* error)
     }
     c->def.shape.kind = shape_kinds[c->def.kind];
     c->def.shape.divisions = c->def.shape.divisions > FINE ? c->def.shape.divisions : FINE;
-    return ty_shape_create(&c->def.shape, mesh, error);
+    ty_error impossible;
+    ty_status status = ty_shape_create(&c->def.shape, mesh, &impossible);
+    return status == TY_OK ? status : ty_error_set(error, status, "container.%s", impossible.text);
 }
 
 static ty_status ground_make(ty_container* c, ty_error* error)

@@ -51,7 +51,7 @@ static void sizes_swell(ty_element_def* def, float swelling)
     def->thickness *= swelling;
 }
 
-static ty_status kinds_complete(mixture* m, const choice* c, float swelling, ty_error* error)
+static ty_status kinds_complete(mixture* m, const choice* c, const ty_wetness_def* wet, float swelling, ty_error* error)
 {
     mixture_kind* kinds = m->kinds + m->kind_count;
     ty_status status = shares_set(kinds, c, error);
@@ -61,6 +61,8 @@ static ty_status kinds_complete(mixture* m, const choice* c, float swelling, ty_
         (void)snprintf(name, sizeof name, c->is_list ? "%selements[%d]" : "%selement", c->place, i);
         kinds[i].def = c->defs[i];
         kinds[i].layer = c->layer;
+        if (kinds[i].def.grain.soak < 0.0f && wet->soak > 0.0f)
+            kinds[i].def.grain.soak = wet->soak;
         status = ty_element_complete(&kinds[i].def, name, error);
         if (kinds[i].def.kind == TY_ELEMENT_RICE)
             sizes_swell(&kinds[i].def, swelling);
@@ -126,7 +128,7 @@ ty_status mixture_init(const ty_aggregate_recipe* recipe, mixture* out, ty_error
     for (int layer = 0; layer <= recipe->layers.count && status == TY_OK; layer++)
     {
         choice c = choice_of(recipe, layer);
-        status = kinds_complete(out, &c, swelling, error);
+        status = kinds_complete(out, &c, &recipe->moisture, swelling, error);
     }
     if (status == TY_OK)
         status = grains_make(out, recipe->seed, error);

@@ -9,6 +9,7 @@ enum
 {
     SMOOTH = 12, // divisions of the surface that balls are fitted to
     RELAX = 3,   // rounds, of the net
+    SOAK = 60,   // min, where it is not said
 };
 
 #define SMALLEST 0.1f // of the mean radius of balls
@@ -25,7 +26,7 @@ ty_grain_def ty_grain_def_default(void)
                           .pore_radius = 0.07e-3f,
                           .open = 0.3f,
                           .smoothing = 0.1e-3f,
-                          .soak = 60.0f,
+                          .soak = -1.0f,
                           .cut = 0.0f};
 }
 
@@ -199,7 +200,7 @@ static ty_status grain_make(making* m, const ty_element_def* def, ty_seed seed, 
         return status;
     ty_mesh_compute_bounds(m->base);
     m->half = 0.5f * (m->base->bounds.high.z - m->base->bounds.low.z);
-    m->soaked = ty_rice_pores_after(60.0f * m->def->soak, m->half);
+    m->soaked = ty_rice_pores_after(60.0f * (m->def->soak < 0.0f ? SOAK : m->def->soak), m->half);
     status = solid_make(m, def, error);
     if (status != TY_OK)
         return status;

@@ -7,6 +7,7 @@
 static inline ty_shape_def shape_of(int kind)
 {
     ty_shape_def def = ty_shape_def_default();
+    def = ty_shape_def_complete(&def);
     def.kind = kind;
     def.divisions = 96;
     if (kind == TY_SHAPE_SWEEP)

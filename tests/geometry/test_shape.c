@@ -549,7 +549,7 @@ static void test_impossible_sizes_name_the_field(void** state)
     REFUSED(TY_SHAPE_BOX, rounding, 0.051f, "rounding");
     REFUSED(TY_SHAPE_BOX, rounding, -0.001f, "rounding");
     REFUSED(TY_SHAPE_PLANE, size.x, 0.0f, "size");
-    REFUSED(TY_SHAPE_CYLINDER, height, 0.0f, "height");
+    REFUSED(TY_SHAPE_CYLINDER, height, -1.0f, "height");
     REFUSED(TY_SHAPE_CYLINDER, rounding, 0.0301f, "rounding");
     REFUSED(TY_SHAPE_TORUS, tube, 0.06f, "tube");
     REFUSED(TY_SHAPE_TORUS, tube, 0.0f, "tube");
@@ -557,7 +557,7 @@ static void test_impossible_sizes_name_the_field(void** state)
     REFUSED(TY_SHAPE_SWEEP, rounding, 0.0f, "rounding");
     REFUSED(TY_SHAPE_SWEEP, rounding, 0.81f, "rounding");
     REFUSED(TY_SHAPE_BOWL, thickness, 0.07f, "thickness");
-    REFUSED(TY_SHAPE_BOWL, thickness, 0.0f, "thickness");
+    REFUSED(TY_SHAPE_BOWL, thickness, -0.001f, "thickness");
     REFUSED(TY_SHAPE_BOWL, foot_radius, 0.058f, "foot_radius");
     REFUSED(TY_SHAPE_BOWL, foot_height, -0.001f, "foot_height");
     REFUSED(TY_SHAPE_BOWL, foot_height, 0.04f, "height");
@@ -577,6 +577,32 @@ static void test_impossible_sizes_name_the_field(void** state)
 }
 
 // Whatever the sizes, a bowl is either refused or sound.
+// What is not given follows the radius and the height: a bowl of any size can be had by those two.
+static void test_lengths_follow_the_size(void** state)
+{
+    (void)state;
+    for (float radius = 0.01f; radius < 0.5f; radius *= 1.7f)
+        for (float share = 0.35f; share < 2.0f; share *= 1.5f)
+        {
+            ty_shape_def def = ty_shape_def_default();
+            def.kind = TY_SHAPE_BOWL;
+            def.radius = radius;
+            def.height = share * radius;
+            ty_mesh* mesh = make(&def);
+            ty_shape_def whole = ty_shape_def_complete(&def);
+            assert_float_equal(mesh->bounds.high.y, def.height, 0.02f * whole.thickness);
+            assert_float_equal(whole.foot_radius, 0.4f * radius, 1e-6f);
+            assert_true(ty_shape_interior_distance(&def, ty_vec3_make(0.0f, 0.6f * def.height, 0.0f)) < 0.0f);
+            ty_mesh_destroy(mesh);
+        }
+    ty_shape_def dome = ty_shape_def_default();
+    dome.kind = TY_SHAPE_DOME;
+    dome.radius = 0.02f;
+    ty_mesh* mesh = make(&dome);
+    assert_float_equal(mesh->bounds.high.y, 0.02f, 1e-5f);
+    ty_mesh_destroy(mesh);
+}
+
 static void test_random_bowls_are_refused_or_sound(void** state)
 {
     (void)state;
@@ -793,6 +819,7 @@ int main(void)
         cmocka_unit_test(test_interior_distance_is_lipschitz),
         cmocka_unit_test(test_interior_distance_follows_the_surface),
         cmocka_unit_test(test_impossible_sizes_name_the_field),
+        cmocka_unit_test(test_lengths_follow_the_size),
         cmocka_unit_test(test_random_bowls_are_refused_or_sound),
         cmocka_unit_test(test_shapes_survive_exhaustion),
         cmocka_unit_test(test_parameters_match_the_struct),

@@ -208,12 +208,44 @@ static void recipes_are_made_to_files(void** state)
     assert_int_equal(ty_recipe_make("/nowhere.yaml", NULL, again, 0, &options, &fixture_errors), TY_BAD_FILE);
 }
 
+// What a generator refuses stands where the recipe says it, or as near as it says anything.
+static void mistakes_have_a_place(void** state)
+{
+    (void)state;
+    static const struct
+    {
+        const char *recipe, *place;
+    } cases[] = {
+        {"tsuya: 1\nkind: aggregate\ncontainer:\n  radius: 0.02\n  thickness: 0.01\n",
+         "heap.yaml:5:3: container.thickness: 0.01 m"},
+        {"tsuya: 1\nkind: aggregate\ncontainer: { radius: 0.02 }\nfill: { count: 90000 }\n",
+         "heap.yaml:4:9: fill.count: 90000 grains"},
+        {"tsuya: 1\nkind: aggregate\nelement: { length: 1 }\n", "heap.yaml:3:12: element.length: 1 mm"},
+        {"tsuya: 1\nkind: aggregate\nelement: { kind: mesh }\n", "heap.yaml:3:1: element.mesh: a path"},
+        {"tsuya: 1\nkind: aggregate\nelements:\n- { kind: ball }\n- { kind: ball, width: 2, fit: 0.001 }\n",
+         "heap.yaml:5:27: elements[1].fit: 0.001"},
+    };
+    fixture_write("scene.yaml", scene);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    {
+        fixture_write("recipes/heap.yaml", cases[i].recipe);
+        assert_int_equal(load(NULL, NULL), TY_BAD_INPUT);
+        if (fixture_errors.count != 1 || !strstr(fixture_errors.items[0].text, cases[i].place))
+            fail_msg("not '%s': %s", cases[i].place,
+                     fixture_errors.count > 0 ? fixture_errors.items[0].text : "nothing");
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        FIXTURE_TEST(the_second_load_makes_nothing),      FIXTURE_TEST(damaged_files_are_made_again),
-        FIXTURE_TEST(recipes_are_written_into_the_scene), FIXTURE_TEST(mistakes_of_recipes_stand_in_them),
-        FIXTURE_TEST(a_missing_attribute_is_named),       FIXTURE_TEST(checking_makes_nothing),
+        cmocka_unit_test(mistakes_have_a_place),
+        FIXTURE_TEST(the_second_load_makes_nothing),
+        FIXTURE_TEST(damaged_files_are_made_again),
+        FIXTURE_TEST(recipes_are_written_into_the_scene),
+        FIXTURE_TEST(mistakes_of_recipes_stand_in_them),
+        FIXTURE_TEST(a_missing_attribute_is_named),
+        FIXTURE_TEST(checking_makes_nothing),
         FIXTURE_TEST(recipes_are_made_to_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -80,7 +80,7 @@ typedef struct ty_grain_def
     float pore_radius; // m, mean
     float open;        // share of the pores that lie at the surface, 0..1
     float smoothing;   // m: what is rounder than that stays; a ball of this radius just vanishes
-    float soak;        // min, in water before cooking, 0..120: how deep pores reach
+    float soak;        // min, in water before cooking, 0..120: how deep pores reach; < 0: not said, 60
     float cut;         // share of the length that is cut off, 0..0.9, to see into it
 } ty_grain_def;
 

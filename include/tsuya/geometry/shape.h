@@ -33,9 +33,9 @@ typedef struct ty_shape_def
     int kind;              // ty_shape_kind
     float radius;          // m
     ty_vec3 size;          // m
-    float height;          // m
+    float height;          // m; 0 = the radius
     float tube;            // m
-    float thickness;       // m, wall of a bowl
+    float thickness;       // m, wall of a bowl; 0 = of its size, as the two below
     float foot_radius;     // m
     float foot_height;     // m
     float curve;           // bowl profile: 1 = cone, 2 = parabola, higher = fuller
@@ -48,6 +48,9 @@ typedef struct ty_shape_def
 } ty_shape_def;
 
 ty_shape_def ty_shape_def_default(void);
+// Lengths that are 0 follow others: height the radius, those of a bowl its radius and height. Whatever takes a def does
+// it itself.
+ty_shape_def ty_shape_def_complete(const ty_shape_def* def);
 const ty_param_table* ty_shape_params(void);
 
 // Welds, normals, uv, bounds and curvature (by the shape's formula; of a stone as measured) are filled in. Where
