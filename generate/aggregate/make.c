@@ -150,7 +150,7 @@ static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
                metrics->floating, metrics->substeps, (double)moving.overlap_max * 100.0,
                (double)metrics->overlap_max * 100.0);
         k->settled = moving;
-        if (metrics->floating == 0 || round == ROUNDS - 1)
+        if (metrics->floating == 0 || round == ROUNDS - 1 || k->recipe->settle.max_seconds <= 0.0f)
         {
             kit_watch(k, kept);
             break;
@@ -307,6 +307,8 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
     ty_log(TY_LOG_INFO, "aggregate: phi %.3f, %.1f contacts, %d float, overlap %.3f %% of the width at most",
            (double)metrics.phi, (double)k->settled.contacts, metrics.floating, (double)metrics.overlap_max * 100.0);
     bool slippery = k->recipe->settle.friction < 0.05f; // such piles creep for long: they end by time
+    if (k->recipe->settle.max_seconds <= 0.0f)          // nobody asked for rest
+        return TY_OK;
     if ((!k->rest && !slippery) || metrics.floating > 0)
         return ty_error_set(error, TY_NOT_AT_REST, "the pile is not at rest: %.3g mm/s, %d grains float",
                             (double)metrics.speed_rms * 1e3, metrics.floating);

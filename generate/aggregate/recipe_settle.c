@@ -13,7 +13,8 @@ static void settle_set_default(void* def)
 static const ty_param settle_rows[] = {
     FIELD("friction", TY_PARAM_FLOAT, "", 0, 2, friction, "Coulomb coefficient, between grains and at walls"),
     FIELD("rolling", TY_PARAM_FLOAT, "", 0, 0.1, rolling, "rolling resistance, of half the width"),
-    FIELD("max_seconds", TY_PARAM_FLOAT, "s", 0.1, 60, max_seconds, "simulated time after which a pile is not at rest"),
+    FIELD("max_seconds", TY_PARAM_FLOAT, "s", 0, 60, max_seconds,
+          "simulated time after which a pile is not at rest; 0: it stays as it was filled, polished"),
     FIELD("rate", TY_PARAM_FLOAT, "1/s", 1000, 20000, rate, "substeps per second; deep piles want more"),
     FIELD("polish", TY_PARAM_INT, "", 0, 5000, polish, "sweeps that take out what overlap is left"),
     FIELD("watch", TY_PARAM_FLOAT, "s", 0, 60, watch,

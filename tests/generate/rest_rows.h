@@ -1,30 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Piles that must come to rest, and what at rest means: bounds of speeds, drift, overlaps, contacts and packing.
 #pragma once
-#include "base/cmocka_all.h"
+#include "made_aggregate.h"
 #include "mesh_overlap.h"
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <tsuya/generate/aggregate_recipe.h>
-#include <tsuya/geometry/mesh_file.h>
-#include <unistd.h>
 
 typedef struct rest_bounds
 {
     double phi[2];      // of the balls: they are what packs
     double contacts[2]; // that press
 } rest_bounds;
-
-static double rest_metric(const ty_aggregate* a, const char* name)
-{
-    char key[64];
-    snprintf(key, sizeof key, "\"%s\": ", name);
-    const char* at = strstr(a->metrics, key);
-    if (!at)
-        fail_msg("no %s in %s", name, a->metrics);
-    return atof(at + strlen(key));
-}
 
 static void rest_between(const char* what, double value, const double bounds[2])
 {
@@ -74,15 +58,6 @@ static void assert_meshes_apart(const ty_aggregate* a, const char* slot, float w
                   (double)o.most * 100.0, (double)o.mean * 100.0, (double)o.pairs);
     rest_below_of("meshes, most", (double)o.most * 100.0, most);
     rest_below_of("meshes, mean", (double)o.mean * 100.0, mean);
-}
-
-static ty_aggregate* rest_made(const ty_aggregate_recipe* recipe, ty_workers* workers)
-{
-    ty_aggregate* out = NULL;
-    ty_error error = {0};
-    if (ty_aggregate_make(recipe, workers, &out, &error) != TY_OK)
-        fail_msg("%s", error.text);
-    return out;
 }
 
 // --- bowls of which a smaller one is the same in other numbers ---

@@ -77,7 +77,7 @@ typedef struct ty_settle_def
 {
     float friction;    // Coulomb, 0..2
     float rolling;     // resistance, of half the width, 0..0.1
-    float max_seconds; // simulated, 0.1..60
+    float max_seconds; // simulated, 0..60; 0: filled and polished, no more
     float rate;        // substeps per second, 1000..20000
     int polish;        // sweeps, 0..5000
     float watch;       // s that a pile at rest goes on, to measure how far it moves, 0..60
