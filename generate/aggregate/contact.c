@@ -301,6 +301,7 @@ void pile_detect(ty_pile* pile, float margin, ty_workers* workers)
     candidates_find(pile, workers);
     pairs_order(pile);
     pile->stale = false;
+    pile->resized = 0.0f;
 }
 
 // Each of two balls may come nearer by .45 of the margin. An angle is at most 2.1 times the distance of its

@@ -1,29 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The film of a pile as it is poured, pressed or settles: the same instances in every frame, each where it is by then.
-#include "kit.h"
+#include "film.h"
+#include <string.h>
 
 #define CHECK_TIME 0.02f // s, between two looks whether it is at rest
 #define WAITING 1e-3f    // size of an element that has not been poured yet: too small to be seen
 
 enum
 {
-    QUIET_CHECKS = 3
+    QUIET_CHECKS = 3,
+    RESIZE_STEPS = 8, // substeps between two sizes of grains that grow
 };
-
-typedef struct film
-{
-    kit* k;
-    ty_aggregate* first; // the fill before it moves: prototypes, ids and attributes of every frame
-    int count;           // of bodies, those that wait too
-    ty_body* bodies;     // [count] of the frame
-    ty_affine* frames;   // [count] the same, of a pile that is bent
-    ty_yolk* yolks;      // [count]
-    ty_vec3* before;     // [count] velocities a substep ago
-    float* poured;       // the attribute, of a film of pouring; else NULL
-    ty_xpbd* soft;       // while it is pressed; else NULL
-    int64_t step;
-    int calm; // looks in a row
-} film;
 
 // --- one moment ---
 
@@ -44,6 +31,37 @@ static void bodies_place(film* f)
         }
 }
 
+// Speeds are those that one sees in the film.
+static void velocities_haste(const film* f, ty_aggregate* shown)
+{
+    for (uint32_t i = 0; i < shown->instance_count && f->haste != 1.0f; i++)
+    {
+        shown->velocities[i] = ty_mul(shown->velocities[i], f->haste);
+        shown->spins[i] = ty_mul(shown->spins[i], f->haste);
+    }
+}
+
+// Grains that grow press into each other: what is shown is polished, and the pile goes on from what is not.
+static void bodies_polish(film* f, ty_pile_metrics* metrics)
+{
+    ty_pile* pile = f->k->pile;
+    ty_body* kept = TY_ALLOC(ty_body, f->count);
+    ty_pile_metrics moving = *metrics;
+    memcpy(kept, ty_pile_bodies(pile), (size_t)f->count * sizeof *kept);
+    ty_pile_polish(pile, f->k->recipe->settle.polish, f->k->workers);
+    ty_pile_measure(pile, metrics, NULL);
+    metrics->speed_rms = moving.speed_rms;
+    metrics->speed_max = moving.speed_max;
+    bodies_place(f);
+    for (int i = 0; i < f->count; i++)
+    {
+        f->bodies[i].velocity = kept[i].velocity;
+        f->bodies[i].spin = kept[i].spin;
+    }
+    ty_pile_set_bodies(pile, kept);
+    ty_free(kept);
+}
+
 static ty_status film_show(film* f, int frame, const ty_aggregate_sink* sink, ty_error* error)
 {
     kit* k = f->k;
@@ -55,12 +73,19 @@ static ty_status film_show(film* f, int frame, const ty_aggregate_sink* sink, ty
         ty_xpbd_speeds(f->soft, &metrics.speed_rms, &metrics.speed_max);
     k->rest = f->calm >= QUIET_CHECKS;
     k->stood = kit_top(k);
+    if (k->cooking)
+    {
+        bodies_polish(f, &metrics);
+        film_rice_show(f);
+    }
+    else
+        bodies_place(f);
     ty_aggregate shown = *f->first; // lends what does not change; its own transforms are moved along
     shown.recipe = shown.hash = NULL;
     shown.metrics = kit_metrics(k, &metrics);
-    bodies_place(f);
     mixture_move(&k->mix, k->recipe->seed, f->bodies, ty_pile_is_bent(k->pile) ? f->frames : NULL, f->yolks,
                  (uint32_t)f->count, &shown);
+    velocities_haste(f, &shown);
     f->first->velocities = shown.velocities; // made by the first frame
     f->first->spins = shown.spins;
     for (uint32_t i = 0; i < shown.instance_count && f->poured; i++)
@@ -117,6 +142,8 @@ static ty_status film_step(film* f, ty_error* error)
     {
         if (k->pour.bodies)
             kit_pour_due(k);
+        if (k->cooking && f->step % RESIZE_STEPS == 0)
+            film_cook(f);
         ty_pile_step(k->pile, k->workers);
         yolks_step(f);
     }
@@ -126,16 +153,32 @@ static ty_status film_step(film* f, ty_error* error)
     return status;
 }
 
-static ty_status film_run(film* f, const ty_aggregate_sink* sink, ty_error* error)
+// To a frame: by the clock, or for as long as rice grows.
+static ty_status film_go(film* f, int frame, ty_error* error)
 {
     const ty_animate_def* animate = &f->k->recipe->animate;
-    double rate = (double)f->k->recipe->settle.rate / (double)animate->fps;
+    double clock = (double)f->k->recipe->settle.rate / (double)animate->fps;
+    int64_t count = (int64_t)((frame - 1) * clock + 0.5) - f->step;
+    if (f->k->cooking)
+        count = film_rice_steps(f, frame, (int64_t)(clock + 0.5));
     ty_status status = TY_OK;
-    for (int frame = 1; frame <= animate->frames && status == TY_OK; frame++)
+    for (int64_t i = 1; i <= count && status == TY_OK && !ty_cancel_requested(); i++)
     {
-        int64_t until = (int64_t)((frame - 1) * rate + 0.5);
-        while (f->step < until && status == TY_OK && !ty_cancel_requested())
-            status = film_step(f, error);
+        f->moment = (double)(frame - 2) + (double)i / (double)count;
+        status = film_step(f, error);
+    }
+    f->haste = f->k->cooking ? (float)((double)count / clock) : 1.0f;
+    return status;
+}
+
+static ty_status film_run(film* f, const ty_aggregate_sink* sink, ty_error* error)
+{
+    ty_status status = TY_OK;
+    f->haste = 1.0f;
+    for (int frame = 1; frame <= f->k->recipe->animate.frames && status == TY_OK; frame++)
+    {
+        if (frame > 1)
+            status = film_go(f, frame, error);
         if (status == TY_OK)
             status = ty_cancel_requested() ? ty_error_set(error, TY_INTERRUPTED, "interrupted before frame %d", frame)
                                            : film_show(f, frame, sink, error);
@@ -151,6 +194,8 @@ static ty_status film_begin(film* f, ty_error* error)
     ty_status status = kit_pile(k, error);
     if (status == TY_OK)
         status = kit_fill(k, error);
+    if (status == TY_OK && k->cooking)
+        status = kit_rest(k, error);
     if (status == TY_OK && kit_stands(k) && !(recipe_is_mould(k->recipe) && press->strain > 0.0f))
         status = kit_rest(k, error);
     ty_pile_metrics metrics = {0};
@@ -165,6 +210,8 @@ static ty_status film_begin(film* f, ty_error* error)
     f->before = TY_ALLOC(ty_vec3, f->count);
     if (k->pour.bodies)
         f->poured = ty_aggregate_add_attribute(f->first, "poured");
+    if (k->cooking)
+        film_rice_init(f);
     if (press->strain > 0.0f)
         f->soft = kit_soft(k);
     else if (recipe_is_mould(k->recipe))
@@ -179,6 +226,9 @@ static ty_status film_check(const ty_aggregate_recipe* r, ty_error* error)
                             "animate.frames: a film shows how rigid grains settle: take solver impulse");
     if (r->fill.start == TY_FILL_POUR && r->press.strain > 0.0f)
         return ty_error_set(error, TY_BAD_INPUT, "animate.frames: a film shows pouring or pressing, not both");
+    if (cooking_is(&r->animate) && (r->fill.start == TY_FILL_POUR || r->press.strain > 0.0f || recipe_is_mould(r)))
+        return ty_error_set(error, TY_BAD_INPUT,
+                            "animate: a film shows cooking (soak, cook, stand) or pouring or pressing, not both");
     return TY_OK;
 }
 
@@ -191,6 +241,7 @@ ty_status kit_film(kit* k, const ty_aggregate_sink* sink, ty_error* error)
     if (status == TY_OK)
         status = film_run(&f, sink, error);
     ty_xpbd_destroy(f.soft);
+    film_rice_term(&f);
     ty_free(f.bodies);
     ty_free(f.frames);
     ty_free(f.yolks);

@@ -39,11 +39,34 @@ typedef struct kit
     float drift_mean, drift_max; // of the width, while it was watched
     float start_repeat;
     bool rest;
-    float press_top;       // m, where the lid begins
-    float released, stood; // m, the topmost element over the plane below, of a mould that is taken off: then, at rest
+    struct cooking* cooking; // of a film; NULL = it shows no cooking
+    float press_top;         // m, where the lid begins
+    float released, stood;   // m, the topmost element over the plane below, of a mould that is taken off: then, at rest
 } kit;
 
+// How rice takes up water and loses it in the minutes of a film.
+typedef struct cooking
+{
+    float soak, cook, stand; // minutes
+    float celsius;           // of the water
+    float drying;            // 0..1
+} cooking;
+
+#define KIT_WET_SPREAD 0.06f // of the water: what the attribute moisture of 1 is
+
+// cooking.c
+bool cooking_is(const ty_animate_def* animate);
+// Makes the recipe that of raw rice, as the film begins, and keeps what it says of the way on.
+TY_CHECKED ty_status cooking_begin(ty_aggregate_recipe* recipe, cooking* out, ty_error* error);
+// Of all the rice, whatever lies where.
+ty_moisture cooking_state(const cooking* c, float minute);
+float cooking_pore_area(const cooking* c, float minute); // m^2, mean of a pore
+// Wet basis of one grain. moisture: its attribute; exposed: 1 at the surface of the heap, 0 deep in it.
+float cooking_wet_basis(const cooking* c, float minute, float moisture, float exposed);
+
 // make.c
+// Settles; drops a new grain for each that is lost over the rim.
+TY_CHECKED ty_status kit_rest(kit* k, ty_error* error);
 // A body of a random element, turned as the recipe allows and at most steepest off the horizontal.
 ty_body kit_body(kit* k, ty_vec3 position, float steepest);
 // Elements, container, and a pile of them without a body.

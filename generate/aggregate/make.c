@@ -168,8 +168,6 @@ static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
 
 // --- the result ---
 
-#define WET_SPREAD 0.06f // of the water: what the attribute moisture of 1 is
-
 // Chance and drying in one number: mean about 0, within -1..1, less at the surface.
 static void attributes_write(const kit* k, uint32_t count, const uint32_t* owners, ty_aggregate* out)
 {
@@ -196,7 +194,7 @@ static void attributes_write(const kit* k, uint32_t count, const uint32_t* owner
         depth[i] = depth[owners[i]];
     }
     for (uint32_t i = 0; i < out->instance_count && wet_basis; i++)
-        wet_basis[i] = ty_clamp(k->mechanics.state.wet_basis * (1.0f + WET_SPREAD * moisture[i]), 0.05f, 1.0f);
+        wet_basis[i] = ty_clamp(k->mechanics.state.wet_basis * (1.0f + KIT_WET_SPREAD * moisture[i]), 0.05f, 1.0f);
 }
 
 ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error)
@@ -324,7 +322,14 @@ static ty_status recipe_make(const void* def, ty_workers* workers, ty_aggregate*
     ty_status status = recipe_check(&recipe, error);
     if (status != TY_OK)
         return status;
+    cooking way;
+    bool cooks = sink && cooking_is(&recipe.animate);
+    if (cooks)
+        status = cooking_begin(&recipe, &way, error);
+    if (status != TY_OK)
+        return status;
     kit* k = TY_ALLOC(kit, 1);
+    k->cooking = cooks ? &way : NULL;
     k->recipe = &recipe;
     k->fill = &recipe.fill;
     k->mechanics = ty_mechanics_of(&recipe);

@@ -35,6 +35,18 @@ static float modulus_of(ty_moisture state, float soaked)
     return ty_clamp(modulus, 1e4f, RAW_MODULUS);
 }
 
+float ty_moisture_swelling(float wet_basis)
+{
+    return ty_pow(volume_of(wet_basis) / volume_of(COOKED), 1.0f / 3.0f);
+}
+
+ty_bridge_def ty_bridge_of_state(ty_moisture state)
+{
+    ty_bridge_def bridge = ty_bridge_of_moisture(state.wet_basis);
+    bridge.adhesion = STARCH * state.cooked * ty_bridge_strength(state.wet_basis);
+    return bridge;
+}
+
 ty_mechanics ty_mechanics_of(const ty_aggregate_recipe* recipe)
 {
     const ty_wetness_def* wet = &recipe->moisture;
@@ -48,11 +60,10 @@ ty_mechanics ty_mechanics_of(const ty_aggregate_recipe* recipe)
                                .soak_celsius = wet->celsius,
                                .cooked = wet->cooked};
         m.state = ty_moisture_make(&def);
-        m.bridge = ty_bridge_of_moisture(m.state.wet_basis);
-        m.bridge.adhesion = STARCH * m.state.cooked * ty_bridge_strength(m.state.wet_basis);
+        m.bridge = ty_bridge_of_state(m.state);
         // The limit of the uptake, of an endless soak.
         m.modulus = modulus_of(m.state, ty_moisture_uptake(wet->soak, wet->celsius) / ty_moisture_uptake(1e9f, 60.0f));
-        m.swelling = ty_pow(volume_of(m.state.wet_basis) / volume_of(COOKED), 1.0f / 3.0f);
+        m.swelling = ty_moisture_swelling(m.state.wet_basis);
     }
     if (settle->cohesion >= 0.0f)
     {

@@ -117,6 +117,30 @@ void ty_pile_set_bodies(ty_pile* pile, const ty_body* bodies)
         body_enter(pile, i);
 }
 
+void ty_pile_resize(ty_pile* pile, const float* scales)
+{
+    float most = 0.0f;
+    pile->max_radius = 0.0f;
+    for (int i = 0; i < pile->count; i++)
+    {
+        ty_body* body = &pile->bodies[i];
+        float radius = pile->def.grains[body->grain].radius * pile_bent_reach(pile, i);
+        most = ty_max(most, radius * (scales[i] - body->scale));
+        pile->max_radius = ty_max(pile->max_radius, radius * scales[i]);
+        body->scale = scales[i];
+        pile_refresh(pile, i);
+    }
+    pile->resized += most;
+    pile->stale = pile->stale || pile->resized > 0.1f * PILE_MARGIN; // bodies that move use up the rest
+}
+
+void ty_pile_set_bridge(ty_pile* pile, const ty_bridge_def* bridge)
+{
+    pile->def.bridge = *bridge;
+    pile_bridge_init(pile);
+    pile->stale = true;
+}
+
 // Drops the pairs of removed bodies and renames the others; ascending order is kept, so impulses still find their pair.
 static void pairs_rename(ty_pile* pile, const int* renamed)
 {

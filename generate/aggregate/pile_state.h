@@ -115,6 +115,7 @@ struct ty_pile
     moving_wall* walls; // NULL = they stand still
     bool stale;         // candidates must be found again
     bool may_sleep;     // bodies at rest are left out while a few still move
+    float resized;      // m, by which balls have come nearer by their sizes since candidates were found
     float time;         // s since the start
     int substeps;
 };

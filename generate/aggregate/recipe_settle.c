@@ -102,9 +102,16 @@ static void animate_set_default(void* def)
 static const ty_param animate_rows[] = {
     FIELD("frames", TY_PARAM_INT, "", 0, 10000, frames, "of the film that pack writes to OUT.####.glb; 0 = none"),
     FIELD("fps", TY_PARAM_FLOAT, "1/s", 1, 1000, fps, "frames per second of simulated time"),
+    FIELD("soak", TY_PARAM_FLOAT, "", 0, 100000, soak,
+          "minutes in water of moisture.celsius; with any of soak, cook and stand the film begins with raw grains at "
+          "rest, and the minutes of all three pass in its frames"),
+    FIELD("cook", TY_PARAM_FLOAT, "", 0, 100000, cook, "minutes on the fire, in which rice becomes cooked and swells"),
+    FIELD("stand", TY_PARAM_FLOAT, "", 0, 100000, stand,
+          "minutes off it, in which rice dries from the surface by moisture.drying, and shrinks"),
 };
 #undef OWNER
 
-const ty_param_table recipe_animate = {"aggregate.animate",    "The pile as it settles, frame by frame.",
-                                       sizeof(ty_animate_def), animate_set_default,
-                                       animate_rows,           TY_PARAM_COUNT(animate_rows)};
+const ty_param_table recipe_animate = {
+    "aggregate.animate",    "The pile as it settles, or as its rice is soaked and cooked, frame by frame.",
+    sizeof(ty_animate_def), animate_set_default,
+    animate_rows,           TY_PARAM_COUNT(animate_rows)};

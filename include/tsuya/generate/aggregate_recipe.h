@@ -126,11 +126,15 @@ typedef struct ty_mechanics
     float swelling;       // of the lengths of rice
 } ty_mechanics;
 
-// A film of the pile as it settles: the same bodies in every frame, those that fall over a rim too.
+// A film of the pile as it settles: the same bodies in every frame, those that fall over a rim too. With any of the
+// phases it begins with raw grains at rest, and all minutes pass in its frames.
 typedef struct ty_animate_def
 {
-    int frames; // 0 = none, ..10000
-    float fps;  // frames a second of simulated time, 1..1000
+    int frames;  // 0 = none, ..10000
+    float fps;   // frames a second of simulated time, 1..1000
+    float soak;  // minutes in water, >= 0
+    float cook;  // minutes on the fire after that, >= 0
+    float stand; // minutes off it: rice dries from the surface and shrinks, >= 0
 } ty_animate_def;
 
 typedef struct ty_aggregate_recipe
@@ -151,6 +155,8 @@ ty_aggregate_recipe ty_aggregate_recipe_default(void); // 2,000 grains of cooked
 const ty_param_table* ty_aggregate_recipe_params(void);
 const ty_param_table* ty_layer_params(void);
 ty_mechanics ty_mechanics_of(const ty_aggregate_recipe* recipe);
+float ty_moisture_swelling(float wet_basis);         // lengths of rice against those when cooked
+ty_bridge_def ty_bridge_of_state(ty_moisture state); // of water, and of starch where it is cooked
 TY_CHECKED ty_status ty_mechanics_check(const ty_aggregate_recipe* recipe, ty_error* error);
 // def is a ty_aggregate_recipe; on failure *out is NULL, else as ty_generator's make.
 TY_CHECKED ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate** out, ty_error* error);

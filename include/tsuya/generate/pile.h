@@ -118,6 +118,10 @@ ty_pile_end ty_pile_settle(ty_pile* pile, float max_seconds, ty_workers* workers
 // Projects overlaps away without velocities: for display; keep a copy of the bodies to go on from.
 void ty_pile_polish(ty_pile* pile, int sweeps, ty_workers* workers);
 void ty_pile_set_bodies(ty_pile* pile, const ty_body* bodies); // count as it is
+// Bodies that grow or shrink where they are, by little each time: what they have is kept, contacts push apart what grew
+// into each other. scales: [count].
+void ty_pile_resize(ty_pile* pile, const float* scales);
+void ty_pile_set_bridge(ty_pile* pile, const ty_bridge_def* bridge); // copied
 
 // From now on the body is its element as map bends it within the element's own frame, before size and turn: balls move
 // with it and grow by its mean stretch, the inertia follows, the mass stays. map's shift is not used.
