@@ -162,6 +162,10 @@ ty_status kit_fill(kit* k, ty_error* error)
     if (status != TY_OK)
         return ty_error_set(error, status, "fill.count: %d grains at a density of %g; the container holds at most %d",
                             k->count, (double)fill->density, (int)(capacity / volume * (double)k->count));
+    if (!ty_container_is_open(k->container) && capacity > 1.02 * volume) // what should be a rabbit has no ears
+        ty_log(TY_LOG_WARNING,
+               "fill.count: %d grains at a density of %g fill %.0f %% of the container, from below; %d fill it",
+               k->count, (double)fill->density, 100.0 * volume / capacity, (int)(capacity / volume * (double)k->count));
     if (fill->start == TY_FILL_POUR)
     {
         k->wanted[0] = count;
