@@ -93,6 +93,7 @@ typedef struct range_job
     ty_range_fn* fn;
     void* context;
     int64_t count, grain, piece_count;
+    bool whole;                            // a cancel request leaves nothing out
     _Alignas(64) atomic_int_fast64_t next; // piece
 } range_job;
 
@@ -119,7 +120,7 @@ struct ty_workers
 static void job_run(range_job* job, int worker)
 {
     float_mode before = float_mode_flush();
-    while (!ty_cancel_requested())
+    while (job->whole || !ty_cancel_requested())
     {
         int64_t piece = atomic_fetch_add_explicit(&job->next, 1, memory_order_relaxed);
         if (piece >= job->piece_count)
@@ -154,8 +155,9 @@ static void* thread_main(void* argument)
     return NULL;
 }
 
-static void job_init(range_job* job, int64_t count, int64_t grain, ty_range_fn* fn, void* context)
+static void job_init(range_job* job, int64_t count, int64_t grain, bool whole, ty_range_fn* fn, void* context)
 {
+    job->whole = whole;
     job->fn = fn;
     job->context = context;
     job->count = count;
@@ -164,20 +166,20 @@ static void job_init(range_job* job, int64_t count, int64_t grain, ty_range_fn* 
     atomic_store_explicit(&job->next, 0, memory_order_relaxed);
 }
 
-bool ty_parallel_for(ty_workers* workers, int64_t count, int64_t grain, ty_range_fn* fn, void* context)
+static void range_run(ty_workers* workers, int64_t count, int64_t grain, bool whole, ty_range_fn* fn, void* context)
 {
     if (count <= 0)
-        return !ty_cancel_requested();
+        return;
     if (!workers)
     {
         range_job job;
-        job_init(&job, count, grain, fn, context);
+        job_init(&job, count, grain, whole, fn, context);
         job_run(&job, 0);
-        return !ty_cancel_requested();
+        return;
     }
     TY_ASSERT(!workers->busy);
     workers->busy = true;
-    job_init(&workers->job, count, grain, fn, context);
+    job_init(&workers->job, count, grain, whole, fn, context);
     bool shared = workers->count > 1 && workers->job.piece_count > 1;
     if (shared)
     {
@@ -196,7 +198,17 @@ bool ty_parallel_for(ty_workers* workers, int64_t count, int64_t grain, ty_range
         pthread_mutex_unlock(&workers->mutex);
     }
     workers->busy = false;
+}
+
+bool ty_parallel_for(ty_workers* workers, int64_t count, int64_t grain, ty_range_fn* fn, void* context)
+{
+    range_run(workers, count, grain, false, fn, context);
     return !ty_cancel_requested();
+}
+
+void ty_parallel_all(ty_workers* workers, int64_t count, int64_t grain, ty_range_fn* fn, void* context)
+{
+    range_run(workers, count, grain, true, fn, context);
 }
 
 // --- creation ---

@@ -29,6 +29,11 @@ static ty_status read_input(const ty_arguments* arguments, ty_aggregate** out, t
     if (status == TY_OK)
         status = ty_aggregate_read(arguments->positional[0], mesh, out, error);
     ty_mesh_destroy(mesh);
+    ty_error none; // most hold no state
+    if (status == TY_OK && !prototype &&
+        strcmp(ty_path_extension(ty_argument_text(arguments, "output", "")), "glb") == 0 &&
+        ty_aggregate_read_state(arguments->positional[0], &(*out)->state, &none) != TY_OK)
+        (*out)->state = (ty_bytes){0};
     return status;
 }
 

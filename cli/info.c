@@ -118,10 +118,16 @@ static ty_status info_aggregate(const char* path, bool recipe, json_t** out, ty_
     {
         json_array_append_new(attributes, ty_json_from_text(aggregate->attributes[i].name));
     }
+    ty_error none;
+    ty_bytes state;
+    if (ty_aggregate_read_state(path, &state, &none) != TY_OK)
+        state = (ty_bytes){0};
     json_t* metrics = aggregate->metrics ? json_loads(aggregate->metrics, 0, NULL) : NULL;
-    *out = json_pack("{s:s, s:i, s:i, s:o, s:s?, s:o}", "type", "aggregate", "instances",
+    *out = json_pack("{s:s, s:i, s:i, s:o, s:o, s:s?, s:o}", "type", "aggregate", "instances",
                      (int)aggregate->instance_count, "prototypes", aggregate->prototype_count, "attributes", attributes,
-                     "hash", aggregate->hash, "metrics", metrics ? metrics : json_null());
+                     "state", state.size > 0 ? json_integer((json_int_t)state.size) : json_null(), "hash",
+                     aggregate->hash, "metrics", metrics ? metrics : json_null());
+    ty_bytes_term(&state);
     ty_aggregate_destroy(aggregate);
     return TY_OK;
 }

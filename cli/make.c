@@ -53,6 +53,8 @@ static ty_status check_output(const ty_arguments* arguments, const product* p, c
     ty_status status = ty_output_check_ending(arguments->command, output, p->extensions);
     if (status != TY_OK)
         return status;
+    if (ty_path_is_sequence(output) && ty_argument_has(arguments, "resume"))
+        return ty_usage(arguments->command, "--resume goes on to one file; a film begins at its beginning");
     if (ty_path_is_sequence(output) ? !p->is_sequence : !p->is_file)
         return ty_usage(arguments->command,
                         p->is_sequence ? "the output '%s' needs #### where the number of a frame goes"
@@ -80,6 +82,7 @@ static ty_status run(const ty_arguments* arguments)
         status = ty_scene_arguments_read(arguments, &scene_arguments);
     if (status != TY_OK)
         return status;
+    scene_arguments.options.resume = ty_argument_text(arguments, "resume", NULL);
     ty_error_list errors = {0};
     double start = ty_time_now();
     status = ty_recipe_make(arguments->positional[0], p->kind, output, (int)element, &scene_arguments.options, &errors);
@@ -101,6 +104,7 @@ static ty_status run(const ty_arguments* arguments)
 
 static const ty_option pack_options[] = {
     {"output", 'o', "OUT.glb", "the aggregate to write; also .usda (USD), .ply (points) and .obj (one mesh)"},
+    {"resume", 0, "FILE.glb", "go on from the state in a file that the same recipe gave with settle.state"},
     {"element", 0, "N", "instead one of its elements alone, from 1, as a mesh: .ply"},
     TY_SCENE_OPTIONS,
 };

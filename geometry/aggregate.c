@@ -46,6 +46,7 @@ void ty_aggregate_destroy(ty_aggregate* aggregate)
     ty_free(aggregate->recipe);
     ty_free(aggregate->hash);
     ty_free(aggregate->metrics);
+    ty_bytes_term(&aggregate->state);
     ty_free(aggregate);
 }
 

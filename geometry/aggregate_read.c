@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Aggregate files in: our checks, the importer in a child process, and our checks of what it sends.
 #include "aggregate_gather.h"
-#include "glb.h"
 #include "glb_build.h"
+#include "gltf_json.h"
 #include "placement.h"
 #include "points_read.h"
 #include <stdio.h>
+#include <string.h>
 #include <strings.h>
 
 // --- in the child ---
@@ -110,6 +111,55 @@ static ty_status read_glb(const char* path, const ty_bytes* bytes, ty_aggregate*
         read_slots(root, *out);
     }
     json_decref(root);
+    return status;
+}
+
+// --- what its generator left ---
+
+static ty_status take_state(const char* name, const ty_glb* glb, const json_t* root, ty_bytes* out, ty_error* error)
+{
+    const json_t* own = ty_gltf_extension(root, TY_GLTF_STATE);
+    const json_t* views = json_object_get(root, "bufferViews");
+    int64_t index;
+    if (!own)
+        return ty_error_set_at(error, TY_BAD_FILE, name, 0, 0,
+                               "holds no state to go on from: the recipe's settle.state keeps one");
+    if (json_array_size(views) == 0 || !ty_gltf_read_index(own, "bufferView", -2, json_array_size(views) - 1, &index))
+        return ty_error_set_at(error, TY_BAD_FILE, name, 0, 0, "%s.bufferView names none of the %zu views",
+                               TY_GLTF_STATE, json_array_size(views));
+    const json_t* view = json_array_get(views, (size_t)index); // checked against the bytes already
+    size_t offset = (size_t)json_integer_value(json_object_get(view, "byteOffset"));
+    size_t size = (size_t)json_integer_value(json_object_get(view, "byteLength"));
+    *out = (ty_bytes){TY_TRY_ALLOC(uint8_t, size + 1), size};
+    if (!out->data)
+        return ty_error_set_at(error, TY_NO_MEMORY, name, 0, 0, "no memory for a state of %zu bytes", size);
+    memcpy(out->data, glb->bin + offset, size);
+    return TY_OK;
+}
+
+ty_status ty_aggregate_find_state(const char* name, const void* bytes, size_t size, ty_bytes* out, ty_error* error)
+{
+    ty_glb glb;
+    json_t* root = NULL;
+    *out = (ty_bytes){0};
+    ty_status status = ty_glb_split(name, bytes, size, &glb, error);
+    if (status == TY_OK)
+        status = ty_gltf_check_aggregate(name, &glb, &root, error);
+    if (status == TY_OK)
+        status = take_state(name, &glb, root, out, error);
+    json_decref(root);
+    return status;
+}
+
+ty_status ty_aggregate_read_state(const char* path, ty_bytes* out, ty_error* error)
+{
+    ty_bytes file;
+    *out = (ty_bytes){0};
+    ty_status status = ty_file_read(path, TY_GLB_SIZE_MAX, &file, error);
+    if (status != TY_OK)
+        return status;
+    status = ty_aggregate_find_state(path, file.data, file.size, out, error);
+    ty_bytes_term(&file);
     return status;
 }
 

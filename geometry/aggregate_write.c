@@ -185,10 +185,11 @@ static void add_scalars(ty_glb_builder* builder, const group* g, bool ordered, j
         ty_glb_set_semantic(attributes, "order", ty_glb_add_integers(builder, g->members, g->count));
     for (int k = 0; k < a->attribute_count; k++)
     {
+        const ty_instance_attribute* attribute =
+            ty_aggregate_attribute_by_name(a, k); // the order in which they are read
         for (uint32_t i = 0; i < g->count; i++)
-            g->values[i] = a->attributes[k].values[g->members[i]];
-        ty_glb_set_semantic(attributes, a->attributes[k].name,
-                            ty_glb_add(builder, g->values, g->count, TY_GLTF_FLOAT, 1, 0));
+            g->values[i] = attribute->values[g->members[i]];
+        ty_glb_set_semantic(attributes, attribute->name, ty_glb_add(builder, g->values, g->count, TY_GLTF_FLOAT, 1, 0));
     }
 }
 
@@ -263,6 +264,13 @@ static ty_status make_extras(const ty_aggregate* a, const char* path, json_t** o
     return TY_OK;
 }
 
+static void add_state(ty_glb_builder* builder, const ty_aggregate* a, json_t* root)
+{
+    int view = ty_glb_add_bytes(builder, a->state.data, a->state.size);
+    json_array_append_new(json_object_get(root, "extensionsUsed"), json_string(TY_GLTF_STATE));
+    json_object_set_new(root, "extensions", json_pack("{s:{s:i}}", TY_GLTF_STATE, "bufferView", view));
+}
+
 ty_status ty_aggregate_write(const char* path, const ty_aggregate* aggregate, ty_error* error)
 {
     ty_status status = ty_aggregate_check_content(aggregate, path, error);
@@ -289,6 +297,8 @@ ty_status ty_aggregate_write(const char* path, const ty_aggregate* aggregate, ty
             json_object_set(root, "materials", materials);
         json_decref(materials);
         add_nodes(&builder, aggregate, root);
+        if (aggregate->state.size > 0)
+            add_state(&builder, aggregate, root);
         status = ty_glb_write(&builder, root, path, error);
         ty_glb_builder_term(&builder);
     }

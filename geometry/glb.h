@@ -11,7 +11,8 @@
 #define TY_GLB_JSON_MAX ((size_t)16 << 20)
 #define TY_GLB_SIZE_MAX (((size_t)1 << 31) - 1)
 #define TY_GLTF_INSTANCING "EXT_mesh_gpu_instancing"
-#define TY_GLTF_ATTRIBUTES_MAX 32 // different names of one kind in a file
+#define TY_GLTF_STATE "TSUYA_aggregate_state" // of the file: a view of bytes that only its generator knows
+#define TY_GLTF_ATTRIBUTES_MAX 32             // different names of one kind in a file
 
 // glTF's numbers for component types.
 enum

@@ -17,27 +17,31 @@ void ty_glb_builder_term(ty_glb_builder* builder)
     json_decref(builder->accessors);
 }
 
-int ty_glb_add(ty_glb_builder* builder, const void* values, size_t count, int component, int width, int target)
+int ty_glb_add_bytes(ty_glb_builder* builder, const void* bytes, size_t size)
 {
-    static const char* const types[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
-    size_t size = count * (size_t)width * 4, wanted = builder->size + size;
+    size_t padded = (size + 3) & ~(size_t)3, wanted = builder->size + padded;
     if (wanted > builder->capacity)
     {
         size_t capacity = wanted > 2 * builder->capacity ? wanted : 2 * builder->capacity;
         builder->bytes = ty_grow(builder->bytes, builder->size, capacity, 1);
         builder->capacity = capacity;
     }
-    memcpy(builder->bytes + builder->size, values, size);
-    json_t* view = json_pack("{s:i, s:I, s:I}", "buffer", 0, "byteOffset", (json_int_t)builder->size, "byteLength",
-                             (json_int_t)size);
-    if (target)
-        json_object_set_new(view, "target", json_integer(target));
-    json_array_append_new(builder->views, view);
-    json_array_append_new(builder->accessors,
-                          json_pack("{s:I, s:i, s:I, s:s}", "bufferView",
-                                    (json_int_t)json_array_size(builder->views) - 1, "componentType", component,
-                                    "count", (json_int_t)count, "type", types[width]));
+    memcpy(builder->bytes + builder->size, bytes, size);
+    memset(builder->bytes + builder->size + size, 0, padded - size);
+    json_array_append_new(builder->views, json_pack("{s:i, s:I, s:I}", "buffer", 0, "byteOffset",
+                                                    (json_int_t)builder->size, "byteLength", (json_int_t)size));
     builder->size = wanted;
+    return (int)json_array_size(builder->views) - 1;
+}
+
+int ty_glb_add(ty_glb_builder* builder, const void* values, size_t count, int component, int width, int target)
+{
+    static const char* const types[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
+    int view = ty_glb_add_bytes(builder, values, count * (size_t)width * 4);
+    if (target)
+        json_object_set_new(json_array_get(builder->views, (size_t)view), "target", json_integer(target));
+    json_array_append_new(builder->accessors, json_pack("{s:i, s:i, s:I, s:s}", "bufferView", view, "componentType",
+                                                        component, "count", (json_int_t)count, "type", types[width]));
     return (int)json_array_size(builder->accessors) - 1;
 }
 

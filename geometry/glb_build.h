@@ -13,6 +13,8 @@ typedef struct ty_glb_builder
 void ty_glb_builder_init(ty_glb_builder* builder);
 void ty_glb_builder_term(ty_glb_builder* builder);
 
+// Appends bytes of any kind, padded to a multiple of four, and returns the view's index.
+int ty_glb_add_bytes(ty_glb_builder* builder, const void* bytes, size_t size);
 // Appends count elements of `width` 32-bit components (1..4) and returns the accessor's index. target: 34962 for
 // vertices, 34963 for indices, 0 for neither.
 int ty_glb_add(ty_glb_builder* builder, const void* values, size_t count, int component, int width, int target);

@@ -177,17 +177,18 @@ static ty_status write_film(void* context, int frame, ty_aggregate* aggregate, t
     return ty_aggregate_export(path, aggregate, false, error);
 }
 
-ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* output, ty_workers* workers,
-                          ty_error* error)
+// partial: an aggregate that was interrupted and holds its state is written as well.
+static ty_status write_made(const ty_recipe* recipe, const char* key, const char* output, const ty_bytes* state,
+                            bool partial, ty_workers* workers, ty_error* error)
 {
     char* text = ty_recipe_text(recipe);
     frame_writer writer = {output, text, key};
-    ty_made made = {.frames = {write_frame, &writer}};
+    ty_made made = {.frames = {write_frame, &writer}, .state = state};
     if (recipe->generator->product == TY_PRODUCT_AGGREGATE && ty_path_is_sequence(output))
         made.film = (ty_aggregate_sink){write_film, &writer};
     ty_status status = recipe->generator->make(recipe->def, workers, &made, error), written = TY_OK;
     ty_error write_error = {0};
-    if (made.aggregate)
+    if (made.aggregate && (status != TY_INTERRUPTED || partial))
     {
         sign(&made.aggregate->recipe, &made.aggregate->hash, ty_string_copy(text), key);
         written = ty_aggregate_export(output, made.aggregate, false, &write_error);
@@ -206,6 +207,12 @@ ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* 
         return status;
     *error = write_error;
     return written;
+}
+
+ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* output, ty_workers* workers,
+                          ty_error* error)
+{
+    return write_made(recipe, key, output, NULL, false, workers, error);
 }
 
 // The recipe file as the root of a loader, read; false after reports.
@@ -240,8 +247,16 @@ static ty_status make_and_write(ty_loader* loader, const ty_recipe* recipe, int 
     ty_status status = ty_recipe_key(recipe, &loader->files, key, error);
     if (status != TY_OK)
         return status;
-    return element > 0 ? write_element(recipe, element, key, output, error)
-                       : ty_recipe_write(recipe, key, output, loader->options->workers, error);
+    if (element > 0)
+        return write_element(recipe, element, key, output, error);
+    const char* resume = loader->options->resume;
+    ty_bytes state = {0};
+    if (resume)
+        status = ty_aggregate_read_state(resume, &state, error);
+    if (status == TY_OK)
+        status = write_made(recipe, key, output, resume ? &state : NULL, true, loader->options->workers, error);
+    ty_bytes_term(&state);
+    return status;
 }
 
 static bool is_kind(ty_loader* loader, const ty_recipe* recipe, const char* kind)

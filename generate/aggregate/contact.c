@@ -217,7 +217,7 @@ static void search_run(search* s, ty_workers* workers, ty_range_fn* fn)
     int64_t count = (pile->count + SEARCH_PIECE - 1) / SEARCH_PIECE;
     // One piece at a time on the caller too: it tells its piece by its first body.
     ty_workers* shared = count > 1 ? workers : NULL;
-    ty_parallel_for(shared, pile->count, SEARCH_PIECE, fn, s);
+    ty_parallel_all(shared, pile->count, SEARCH_PIECE, fn, s);
     for (int64_t k = 0; k < count; k++)
     {
         found* f = &s->pieces[k];
@@ -297,6 +297,11 @@ void pile_detect(ty_pile* pile, float margin, ty_workers* workers)
         pile->poses[i].seen_rotation = pile->bodies[i].rotation;
     }
     pile_walls_see(pile);
+    pile_detect_again(pile, workers);
+}
+
+void pile_detect_again(ty_pile* pile, ty_workers* workers)
+{
     lists_swap(pile);
     candidates_find(pile, workers);
     pairs_order(pile);
@@ -362,7 +367,7 @@ void pile_sweep(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn)
         int count = pile->color_first[c + 1] - s.first;
         bool share = count >= WORTH_SHARING && c != PAIR_COLORS - 1;
         if (count > 0)
-            ty_parallel_for(share ? workers : NULL, count, share ? (count + 7) / 8 : count, sweep_range, &s);
+            ty_parallel_all(share ? workers : NULL, count, share ? (count + 7) / 8 : count, sweep_range, &s);
     }
 }
 
@@ -375,5 +380,5 @@ void pile_each(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn)
     };
     sweep s = {pile, fn, 0};
     bool share = pile->pair_count >= WORTH_SHARING;
-    ty_parallel_for(share ? workers : NULL, pile->pair_count, share ? PIECE : pile->pair_count + 1, each_range, &s);
+    ty_parallel_all(share ? workers : NULL, pile->pair_count, share ? PIECE : pile->pair_count + 1, each_range, &s);
 }

@@ -42,6 +42,10 @@ typedef struct kit
     struct cooking* cooking; // of a film; NULL = it shows no cooking
     float press_top;         // m, where the lid begins
     float released, stood;   // m, the topmost element over the plane below, of a mould that is taken off: then, at rest
+    int round;               // of settling and looking for what floats
+    ty_bytes state;          // kept for the file, or empty
+    bool out_of_time;        // when it was kept
+    bool resumed;            // the next settling goes on from a state
 } kit;
 
 // How rice takes up water and loses it in the minutes of a film.
@@ -83,6 +87,11 @@ char* kit_metrics(const kit* k, const ty_pile_metrics* m); // JSON; the caller f
 // Goes on from rest for settle.watch seconds and measures how far bodies move; then all is as it was.
 void kit_watch(kit* k, const ty_body* rest);
 
+// make_state.c
+// The state, if the recipe wants it. What is kept when time has run out is not replaced any more.
+TY_CHECKED ty_status kit_keep(kit* k, bool out_of_time, ty_error* error);
+TY_CHECKED ty_status kit_resume(kit* k, const void* state, size_t size, ty_error* error); // in place of a fill
+
 // make_fill.c
 TY_CHECKED ty_status kit_fill(kit* k, ty_error* error);
 void kit_drop(kit* k, int count); // grains fall onto the pile: in layers over its planned surface, not touching
@@ -96,6 +105,7 @@ TY_CHECKED ty_status kit_pour(kit* k, ty_error* error);       // until all have 
 
 // make_layers.c
 TY_CHECKED ty_status layers_check(const ty_aggregate_recipe* r, ty_error* error);
+void kit_layer_select(kit* k, int layer); // what is drawn and dropped from now on is of it
 // Selects the layer and lets it fall onto the pile.
 TY_CHECKED ty_status kit_layer(kit* k, int layer, ty_error* error);
 // As many new bodies of each layer fall onto the pile as are missing.

@@ -77,6 +77,11 @@ static ty_status container_check(const kit* k, ty_error* error)
 
 // --- adjust ---
 
+static ty_status interrupted(const char* what, ty_error* error)
+{
+    return ty_cancel_requested() ? ty_error_set(error, TY_INTERRUPTED, "interrupted while %s", what) : TY_OK;
+}
+
 ty_status kit_rest(kit* k, ty_error* error)
 {
     int allowed = 20 + k->count / 4;
@@ -84,12 +89,17 @@ ty_status kit_rest(kit* k, ty_error* error)
     while (end == TY_PILE_LOST && k->lost <= allowed)
     {
         int lost;
-        end = ty_pile_settle(k->pile, k->recipe->settle.max_seconds, k->workers, &lost);
+        end = k->resumed ? ty_pile_settle_on(k->pile, k->recipe->settle.max_seconds, k->workers, &lost)
+                         : ty_pile_settle(k->pile, k->recipe->settle.max_seconds, k->workers, &lost);
+        k->resumed = false;
+        k->rest = end == TY_PILE_REST;
+        ty_status status = end == TY_PILE_LOST ? TY_OK : kit_keep(k, end != TY_PILE_REST, error);
+        if (status != TY_OK)
+            return status;
         k->lost += lost;
         k->replaced += lost;
         kit_refill(k);
     }
-    k->rest = end == TY_PILE_REST;
     if (end == TY_PILE_CANCELED)
         return ty_error_set(error, TY_INTERRUPTED, "interrupted while settling");
     if (end == TY_PILE_LOST)
@@ -126,6 +136,12 @@ static void floating_replace(kit* k, bool* held)
     kit_refill(k);
 }
 
+// Such piles creep for long: they end by time.
+static bool is_slippery(const kit* k)
+{
+    return k->recipe->settle.friction < 0.05f;
+}
+
 // Polishes a copy; where a grain floats after that, the unpolished pile settles on with that grain replaced or stirred.
 static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
 {
@@ -133,7 +149,7 @@ static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
     ty_body* kept = TY_ALLOC(ty_body, count);
     bool* held = TY_ALLOC(bool, count);
     ty_status status = TY_OK;
-    for (int round = 0; status == TY_OK; round++)
+    for (; status == TY_OK; k->round++)
     {
         status = kit_rest(k, error);
         if (status != TY_OK)
@@ -150,11 +166,12 @@ static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
                metrics->floating, metrics->substeps, (double)moving.overlap_max * 100.0,
                (double)metrics->overlap_max * 100.0);
         k->settled = moving;
-        if (metrics->floating == 0 || round == ROUNDS - 1 || k->recipe->settle.max_seconds <= 0.0f)
-        {
+        bool last = metrics->floating == 0 || k->round == ROUNDS - 1 || (!k->rest && !is_slippery(k));
+        if (last)
             kit_watch(k, kept);
+        status = interrupted("polishing", error); // which then is not complete
+        if (last || status != TY_OK)
             break;
-        }
         ty_pile_set_bodies(k->pile, kept);
         if (ty_container_is_open(k->container))
             floating_replace(k, held);
@@ -216,6 +233,8 @@ ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, 
     attributes_write(k, count, owners, a);
     ty_free(owners);
     a->metrics = kit_metrics(k, metrics);
+    a->state = k->state; // now the aggregate's
+    k->state = (ty_bytes){0};
     *out = a;
     return TY_OK;
 }
@@ -264,18 +283,35 @@ ty_status kit_pile(kit* k, ty_error* error)
     return TY_OK;
 }
 
-static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
+// Interrupted: the pile as it stands, if its state is kept, so that one can go on.
+static ty_status kit_stop(kit* k, ty_aggregate** out, ty_error* error)
+{
+    ty_pile_metrics metrics;
+    ty_error ignored;
+    if (!k->state.data)
+        return TY_INTERRUPTED;
+    ty_pile_measure(k->pile, &metrics, NULL);
+    ty_status status = kit_write(k, &metrics, out, &ignored);
+    return status == TY_OK ? ty_error_set(error, TY_INTERRUPTED, "interrupted while settling; pack --resume goes on")
+                           : TY_INTERRUPTED;
+}
+
+static ty_status kit_make(kit* k, const ty_bytes* state, ty_aggregate** out, ty_error* error)
 {
     double start = ty_time_now();
     ty_status status = kit_pile(k, error);
     if (status != TY_OK)
         return status;
     double prepared = ty_time_now();
-    status = kit_fill(k, error);
+    status = state ? kit_resume(k, state->data, state->size, error) : kit_fill(k, error);
+    if (status == TY_OK)
+        status = interrupted("filling", error); // an inflation ends early
+    if (status == TY_OK && !state)
+        status = kit_keep(k, false, error);
     double filled = ty_time_now();
     ty_pile_metrics metrics = {0};
     bool elastic = k->recipe->settle.solver == TY_SOLVER_XPBD;
-    for (int layer = 1; layer <= k->recipe->layers.count && status == TY_OK; layer++)
+    for (int layer = k->layer + 1; layer <= k->recipe->layers.count && status == TY_OK; layer++)
     {
         status = kit_rest(k, error); // what lies below
         if (status == TY_OK)
@@ -294,6 +330,10 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
     if (status == TY_OK && kit_stands(k))
         status = kit_stand(k, &metrics, error);
     if (status == TY_OK)
+        status = interrupted("settling", error); // polishing ends early
+    if (status == TY_INTERRUPTED)
+        return kit_stop(k, out, error);
+    if (status == TY_OK)
         status = pile_cut(k, error);
     if (status == TY_OK)
         status = kit_write(k, &metrics, out, error);
@@ -304,10 +344,9 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
            metrics.count, prepared - start, filled - prepared, ty_time_now() - filled, k->lost, k->replaced);
     ty_log(TY_LOG_INFO, "aggregate: phi %.3f, %.1f contacts, %d float, overlap %.3f %% of the width at most",
            (double)metrics.phi, (double)k->settled.contacts, metrics.floating, (double)metrics.overlap_max * 100.0);
-    bool slippery = k->recipe->settle.friction < 0.05f; // such piles creep for long: they end by time
-    if (k->recipe->settle.max_seconds <= 0.0f)          // nobody asked for rest
+    if (k->recipe->settle.max_seconds <= 0.0f) // nobody asked for rest
         return TY_OK;
-    if ((!k->rest && !slippery) || metrics.floating > 0)
+    if ((!k->rest && !is_slippery(k)) || metrics.floating > 0)
         return ty_error_set(error, TY_NOT_AT_REST, "the pile is not at rest: %.3g mm/s, %d grains float",
                             (double)metrics.speed_rms * 1e3, metrics.floating);
     return TY_OK;
@@ -315,8 +354,8 @@ static ty_status kit_make(kit* k, ty_aggregate** out, ty_error* error)
 
 // --- from a recipe ---
 
-static ty_status recipe_make(const void* def, ty_workers* workers, ty_aggregate** out, const ty_aggregate_sink* sink,
-                             ty_error* error)
+static ty_status recipe_make(const void* def, const ty_bytes* state, ty_workers* workers, ty_aggregate** out,
+                             const ty_aggregate_sink* sink, ty_error* error)
 {
     ty_aggregate_recipe recipe = *(const ty_aggregate_recipe*)def;
     ty_status status = recipe_check(&recipe, error);
@@ -335,7 +374,8 @@ static ty_status recipe_make(const void* def, ty_workers* workers, ty_aggregate*
     k->mechanics = ty_mechanics_of(&recipe);
     k->workers = workers;
     k->rng = ty_rng_make(recipe.seed, 0x626f6479, 0);
-    status = sink ? kit_film(k, sink, error) : kit_make(k, out, error);
+    status = sink ? kit_film(k, sink, error) : kit_make(k, state, out, error);
+    ty_bytes_term(&k->state);
     ty_free(k->pour.bodies);
     ty_pile_destroy(k->pile);
     ty_container_destroy(k->container);
@@ -348,12 +388,20 @@ static ty_status recipe_make(const void* def, ty_workers* workers, ty_aggregate*
 ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate** out, ty_error* error)
 {
     *out = NULL;
-    return recipe_make(def, workers, out, NULL, error);
+    return recipe_make(def, NULL, workers, out, NULL, error);
+}
+
+ty_status ty_aggregate_resume(const void* def, const void* state, size_t size, ty_workers* workers, ty_aggregate** out,
+                              ty_error* error)
+{
+    const ty_bytes bytes = {(uint8_t*)state, size}; // read only
+    *out = NULL;
+    return recipe_make(def, &bytes, workers, out, NULL, error);
 }
 
 ty_status ty_aggregate_film(const void* def, ty_workers* workers, const ty_aggregate_sink* sink, ty_error* error)
 {
     if (((const ty_aggregate_recipe*)def)->animate.frames < 1)
         return ty_error_set(error, TY_BAD_INPUT, "animate.frames is 0: say how many frames the film has");
-    return recipe_make(def, workers, NULL, sink, error);
+    return recipe_make(def, NULL, workers, NULL, sink, error);
 }

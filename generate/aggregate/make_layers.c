@@ -20,15 +20,20 @@ ty_status layers_check(const ty_aggregate_recipe* r, ty_error* error)
     return TY_OK;
 }
 
+void kit_layer_select(kit* k, int layer)
+{
+    mixture_select(&k->mix, layer);
+    k->layer = layer;
+    k->fill = layer > 0 ? &layer_def(k->recipe, layer)->fill : &k->recipe->fill;
+}
+
 ty_status kit_layer(kit* k, int layer, ty_error* error)
 {
     char place[32];
     (void)snprintf(place, sizeof place, "layers[%d].", layer - 1);
     if (!ty_container_is_open(k->container))
         return ty_error_set(error, TY_BAD_INPUT, "%sfill: it falls from above; the container has no opening", place);
-    mixture_select(&k->mix, layer);
-    k->layer = layer;
-    k->fill = &layer_def(k->recipe, layer)->fill;
+    kit_layer_select(k, layer);
     float inset = 0.25f * k->mix.width;
     int count;
     ty_status status = kit_count(k, place, inset, &count, error);

@@ -95,6 +95,7 @@ void ty_pile_add(ty_pile* pile, const ty_body* bodies, int count)
     int first = pile->count;
     if (count == 0)
         return;
+    pile->pause.held = false;
     memcpy(pile->bodies + first, bodies, (size_t)count * sizeof *bodies);
     pile->count += count;
     balls_lay(pile, first);
@@ -111,6 +112,7 @@ void ty_pile_set_bodies(ty_pile* pile, const ty_body* bodies)
 {
     if (pile->count == 0)
         return;
+    pile->pause.held = false;
     memmove(pile->bodies, bodies, (size_t)pile->count * sizeof *bodies);
     balls_lay(pile, 0);
     for (int i = 0; i < pile->count; i++)
@@ -130,12 +132,14 @@ void ty_pile_resize(ty_pile* pile, const float* scales)
         body->scale = scales[i];
         pile_refresh(pile, i);
     }
+    pile->pause.held = false;
     pile->resized += most;
     pile->stale = pile->stale || pile->resized > 0.1f * PILE_MARGIN; // bodies that move use up the rest
 }
 
 void ty_pile_set_bridge(ty_pile* pile, const ty_bridge_def* bridge)
 {
+    pile->pause.held = false;
     pile->def.bridge = *bridge;
     pile_bridge_init(pile);
     pile->stale = true;
@@ -180,6 +184,7 @@ void ty_pile_remove(ty_pile* pile, const bool* gone)
         pile->ball_first[kept + 1] = pile->ball_first[kept] + balls;
         kept++;
     }
+    pile->pause.held = false;
     pile->count = kept;
     pairs_rename(pile, renamed);
     ty_free(renamed);

@@ -23,6 +23,7 @@ typedef struct motion
     uint16_t quiet;           // substeps below the sleeping speed
     bool asleep;              // stands still with infinite mass until something hits it
     bool woken;
+    bool slept; // when the settling was held
 } motion;
 
 // A candidate: ball of the pair's first body against a ball of the second, or against a wall.
@@ -79,6 +80,17 @@ typedef struct bend
     float inverse_inertia[6]; // per unit mass, as of the element
 } bend;
 
+// Where a settling ended, until something else is done to the pile.
+typedef struct pile_pause
+{
+    bool held;      // it can go on
+    bool rested;    // it ended at rest
+    bool may_sleep; // as it was
+    int settled;    // substeps of it
+    int calm;       // checks in a row
+} pile_pause;
+
+// What the next substep reads, and what follows from it for those to come, is saved by pile_save.c.
 struct ty_pile
 {
     ty_pile_def def;
@@ -116,7 +128,8 @@ struct ty_pile
     bool stale;         // candidates must be found again
     bool may_sleep;     // bodies at rest are left out while a few still move
     float resized;      // m, by which balls have come nearer by their sizes since candidates were found
-    float time;         // s since the start
+    pile_pause pause;
+    float time; // s since the start
     int substeps;
 };
 
@@ -161,6 +174,8 @@ ty_vec3 pile_wall_velocity(const ty_pile* pile, int wall, ty_vec3 p); // m/s
 // contact.c
 // Candidates within margin, in id order, with kept impulses and colours. Equal bits for any worker count.
 void pile_detect(ty_pile* pile, float margin, ty_workers* workers);
+// The same lists again from bodies that stand where they were then, with the reaches that are noted.
+void pile_detect_again(ty_pile* pile, ty_workers* workers);
 bool pile_moved(const ty_pile* pile); // a ball may have moved more than .45 of its body's reach
 
 // Runs fn over the pairs of each colour in turn, then over the walls. Pairs of one colour share no body.
@@ -170,6 +185,9 @@ void pile_sweep(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn);
 void pile_each(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn);
 
 // settle.c
+void pile_substep(ty_pile* pile, ty_workers* workers);
+void pile_body_wake(ty_pile* pile, int body);
+void pile_body_sleep(motion* m);
 // Gap, normal and arms of a touch; false when its gap is above limit.
 bool pile_contact_place(const ty_pile* pile, const pair* p, const touch* t, float limit, contact* c);
 

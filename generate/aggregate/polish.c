@@ -79,7 +79,7 @@ static void refresh_range(void* context, int64_t begin, int64_t end, int worker)
 
 void pile_refresh_all(ty_pile* pile)
 {
-    ty_parallel_for(NULL, pile->count, pile->count + 1, refresh_range, pile);
+    ty_parallel_all(NULL, pile->count, pile->count + 1, refresh_range, pile);
 }
 
 static void stop(ty_pile* pile)
@@ -94,6 +94,7 @@ static void stop(ty_pile* pile)
 void ty_pile_inflate(ty_pile* pile, const ty_fill_top* top, int sweeps, ty_workers* workers)
 {
     float grow = 0.6f * (float)sweeps;
+    pile->pause.held = false;
     pile->lid = top;
     for (int k = 0; k < sweeps && !ty_cancel_requested(); k++)
     {
@@ -115,6 +116,7 @@ void ty_pile_inflate(ty_pile* pile, const ty_fill_top* top, int sweeps, ty_worke
 
 void ty_pile_polish(ty_pile* pile, int sweeps, ty_workers* workers)
 {
+    pile->pause.held = false;
     stop(pile);
     for (int k = 0; k < sweeps && !ty_cancel_requested(); k++)
     {

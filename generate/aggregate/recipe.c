@@ -214,6 +214,8 @@ static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_err
 {
     if (out->film.put)
         return ty_aggregate_film(def, workers, &out->film, error);
+    if (out->state)
+        return ty_aggregate_resume(def, out->state->data, out->state->size, workers, &out->aggregate, error);
     return ty_aggregate_make(def, workers, &out->aggregate, error);
 }
 

@@ -19,6 +19,8 @@ static const ty_param settle_rows[] = {
     FIELD("polish", TY_PARAM_INT, "", 0, 5000, polish, "sweeps that take out what overlap is left"),
     FIELD("watch", TY_PARAM_FLOAT, "s", 0, 60, watch,
           "simulated time that it goes on at rest, to tell how far the elements move; the result is the same"),
+    FIELD("state", TY_PARAM_BOOL, "", 0, 0, state,
+          "the file holds the whole state of the pile before it is polished, so that pack --resume goes on from it"),
     FIELD("cohesion", TY_PARAM_FLOAT, "N/m", -1, 1, cohesion,
           "surface tension of the liquid between grains; below 0: follows moisture, 0 where no state is given"),
     FIELD("adhesion", TY_PARAM_FLOAT, "J/m^2", -1, 10, adhesion,

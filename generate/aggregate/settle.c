@@ -3,22 +3,12 @@
 // sweep. Without that memory friction acts viscously and a pile never rests. Soft contacts after Catto 2011 and 2023.
 #include "pile_state.h"
 
-enum
-{
-    QUIET_CHECKS = 3,
-};
-
 #define GRAVITY_RAMP 0.05f  // s
 #define DAMPING_RATIO 10.0f // of a contact
 #define PUSH_OUT 0.1f       // m/s, largest speed at which an overlap is undone
 #define TOUCHING 2e-6f      // m, gap at which a bridge of liquid forms
-#define CHECK_TIME 0.02f    // s
-#define QUIET_RMS 0.3e-3f   // m/s
-#define QUIET_MAX 1.7e-3f   // m/s
-#define QUIET_AFTER 0.09f   // s
 #define SLEEP_SPEED 0.5e-3f // m/s
 #define SLEEP_TIME 0.024f   // s, below that speed
-#define SLEEP_AFTER 0.12f   // s since the start
 #define WAKE_SPEED 5e-3f    // m/s, of a hit
 
 // --- contacts of the substep ---
@@ -317,7 +307,7 @@ static void body_roll(const ty_pile* pile, motion* m, ty_vec3* kept)
     *kept = wanted;
 }
 
-static void body_wake(ty_pile* pile, int i)
+void pile_body_wake(ty_pile* pile, int i)
 {
     motion* m = &pile->motions[i];
     m->asleep = m->woken = false;
@@ -325,7 +315,7 @@ static void body_wake(ty_pile* pile, int i)
     pile_refresh(pile, i); // brings its mass back
 }
 
-static void body_sleep(motion* m)
+void pile_body_sleep(motion* m)
 {
     *m = (motion){.asleep = true};
 }
@@ -338,14 +328,14 @@ static void bodies_roll(void* context, int64_t begin, int64_t end, int worker)
     {
         motion* m = &pile->motions[i];
         if (m->woken)
-            body_wake(pile, (int)i);
+            pile_body_wake(pile, (int)i);
         if (m->asleep)
             continue;
         body_roll(pile, m, &pile->rolls[i]);
         float speed = ty_length(m->v) + ty_length(m->w) * 0.5f * pile->mean_width;
         m->quiet = speed < SLEEP_SPEED && pile->may_sleep && !pile->walls ? (uint16_t)(m->quiet + 1) : 0;
         if ((float)m->quiet > SLEEP_TIME * pile->def.rate)
-            body_sleep(m);
+            pile_body_sleep(m);
         pile->bodies[i].velocity = m->v;
         pile->bodies[i].spin = m->w;
     }
@@ -359,10 +349,10 @@ static void for_bodies(ty_pile* pile, ty_workers* workers, ty_range_fn* fn)
         PIECE = 256,
     };
     bool share = pile->count >= WORTH_SHARING;
-    ty_parallel_for(share ? workers : NULL, pile->count, share ? PIECE : pile->count + 1, fn, pile);
+    ty_parallel_all(share ? workers : NULL, pile->count, share ? PIECE : pile->count + 1, fn, pile);
 }
 
-void ty_pile_step(ty_pile* pile, ty_workers* workers)
+void pile_substep(ty_pile* pile, ty_workers* workers)
 {
     pile_walls_place(pile);
     if (pile_moved(pile))
@@ -380,87 +370,8 @@ void ty_pile_step(ty_pile* pile, ty_workers* workers)
     pile->substeps++;
 }
 
-// --- until at rest ---
-
-static int lost_remove(ty_pile* pile)
+void ty_pile_step(ty_pile* pile, ty_workers* workers)
 {
-    bool* gone = TY_ALLOC(bool, pile->count);
-    int lost = 0;
-    for (int i = 0; i < pile->count && pile->def.container; i++)
-    {
-        gone[i] = ty_container_lost(pile->def.container, pile_in_wall(pile, 0, pile->bodies[i].position));
-        lost += gone[i];
-    }
-    if (lost > 0)
-        ty_pile_remove(pile, gone);
-    ty_free(gone);
-    return lost;
-}
-
-static int sleepers_count(const ty_pile* pile)
-{
-    int count = 0;
-    for (int i = 0; i < pile->count; i++)
-        count += pile->motions[i].asleep;
-    return count;
-}
-
-static void all_wake(ty_pile* pile)
-{
-    for (int i = 0; i < pile->count; i++)
-        if (pile->motions[i].asleep)
-            body_wake(pile, i);
-}
-
-bool ty_pile_is_calm(const ty_pile* pile)
-{
-    float rms, largest;
-    pile_speeds(pile, &rms, &largest);
-    return rms < QUIET_RMS && largest < QUIET_MAX && pile->time > QUIET_AFTER;
-}
-
-// One check: counts calm ones in a row. While few bodies move the others may sleep; when all do, or none moves for
-// long, everybody wakes and the count begins again: rest is found with all of them awake.
-static void rest_check(ty_pile* pile, int* calm)
-{
-    bool is_calm = ty_pile_is_calm(pile);
-    int sleepers = sleepers_count(pile);
-    *calm = is_calm ? *calm + 1 : 0;
-    if (sleepers > 0 && (sleepers == pile->count || *calm >= QUIET_CHECKS))
-    {
-        all_wake(pile);
-        pile->may_sleep = false;
-        *calm = 0;
-    }
-    else if (!is_calm)
-        pile->may_sleep = pile->time > SLEEP_AFTER;
-}
-
-ty_pile_end ty_pile_settle(ty_pile* pile, float max_seconds, ty_workers* workers, int* lost)
-{
-    int interval = (int)(CHECK_TIME * pile->def.rate + 0.5f), steps = (int)(max_seconds * pile->def.rate);
-    int out = 0, calm = 0;
-    ty_pile_end end = TY_PILE_TIME;
-    for (int k = 1; k <= steps && end == TY_PILE_TIME; k++)
-    {
-        ty_pile_step(pile, workers);
-        if (k % interval != 0)
-            continue;
-        out = lost_remove(pile);
-        rest_check(pile, &calm);
-        if (ty_cancel_requested())
-            end = TY_PILE_CANCELED;
-        else if (out > 0)
-            end = TY_PILE_LOST;
-        else if (calm >= QUIET_CHECKS)
-            end = TY_PILE_REST;
-    }
-    if (end != TY_PILE_LOST) // else one goes on with those asleep that are
-    {
-        pile->may_sleep = false;
-        all_wake(pile);
-    }
-    if (lost)
-        *lost = out;
-    return end;
+    pile->pause.held = false;
+    pile_substep(pile, workers);
 }

@@ -85,6 +85,7 @@ void ty_pile_move_walls(ty_pile* pile, ty_wall_motion_fn* fn, void* context)
 {
     ty_free(pile->walls);
     pile->walls = NULL;
+    pile->pause.held = false;
     pile->wall_fn = fn;
     pile->wall_context = context;
     if (fn && pile->def.container)

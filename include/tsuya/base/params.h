@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <tsuya/base/hash.h>
 #include <tsuya/base/math.h>
 
 // What a field holds in memory (at row.offset) and how it is written.
@@ -138,5 +139,10 @@ struct ty_param_table
     const ty_param* params;
     int count;
 };
+
+// Adds what def holds to the hash: values by their names, texts by their content, but of paths only whether there is
+// one, as what stands in the file is another matter. skip: rows that do not count, by their dotted paths
+// ("settle.max_seconds"), up to NULL; a group takes all below it.
+void ty_params_add_to_hash(const ty_param_table* table, const void* def, const char* const* skip, ty_hasher* hasher);
 
 #define TY_PARAM_COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))

@@ -21,6 +21,9 @@ typedef void ty_range_fn(void* context, int64_t begin, int64_t end, int worker);
 // Returns false when cancelled (pieces not yet begun are left out). workers NULL = on the caller alone.
 bool ty_parallel_for(ty_workers* workers, int64_t count, int64_t grain, ty_range_fn* fn, void* context);
 
+// The same, but all pieces are done whether cancelled or not: for steps that must be whole, and are short.
+void ty_parallel_all(ty_workers* workers, int64_t count, int64_t grain, ty_range_fn* fn, void* context);
+
 // The cancel flag is one for the process, so that a signal handler can set it. Async-signal-safe.
 void ty_cancel_request(int signal_number); // remembers the first signal; 0 = cancelled without a signal
 bool ty_cancel_requested(void);

@@ -81,6 +81,7 @@ typedef struct ty_settle_def
     float rate;        // substeps per second, 1000..20000
     int polish;        // sweeps, 0..5000
     float watch;       // s that a pile at rest goes on, to measure how far it moves, 0..60
+    bool state;        // the file holds what it takes to go on exactly
     float cohesion;    // N/m, tension of the liquid between grains; < 0: follows the moisture
     float adhesion;    // J/m^2, work of adhesion of sticky surfaces, 0..10; < 0: follows the moisture
     int solver;        // ty_solver
@@ -160,6 +161,12 @@ ty_bridge_def ty_bridge_of_state(ty_moisture state); // of water, and of starch 
 TY_CHECKED ty_status ty_mechanics_check(const ty_aggregate_recipe* recipe, ty_error* error);
 // def is a ty_aggregate_recipe; on failure *out is NULL, else as ty_generator's make.
 TY_CHECKED ty_status ty_aggregate_make(const void* def, ty_workers* workers, ty_aggregate** out, ty_error* error);
+// Goes on from the state that such an aggregate holds (aggregate->state), made with settle.state: that of the moment at
+// which time first ran out or it was interrupted, else of rest. What comes out is, to the bit, what one run of this
+// recipe gives. TY_BAD_FILE: damaged, or of another program; TY_BAD_INPUT: of another recipe. May differ: settle's
+// max_seconds, state and watch, container.cut.
+TY_CHECKED ty_status ty_aggregate_resume(const void* def, const void* state, size_t size, ty_workers* workers,
+                                         ty_aggregate** out, ty_error* error);
 // Frame by frame instead: the first is the fill before it moves. recipe.animate.frames is at least 1; nothing is
 // replaced, stirred or polished. The aggregate that put gets is lent; prototypes, ids and the order of the instances
 // are the same in all.

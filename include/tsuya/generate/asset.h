@@ -36,6 +36,7 @@ typedef struct ty_made
     ty_mesh* mesh;           // the same
     ty_frame_sink frames;    // given by the caller
     ty_aggregate_sink film;  // given where the caller wants an aggregate as a film; then there is no aggregate
+    const ty_bytes* state;   // given where the making of an aggregate goes on from one that is kept; else NULL
 } ty_made;
 
 // A kind of recipe. The def struct is described by params; scene/ fills it from YAML.

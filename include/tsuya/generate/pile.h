@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rigid grains of balls under gravity: fill a space, settle with friction until at rest, polish overlaps away.
 #pragma once
+#include <tsuya/base/file.h>
 #include <tsuya/generate/container.h>
 #include <tsuya/generate/element.h>
 
@@ -114,6 +115,18 @@ typedef enum ty_pile_end
 // Steps until at rest (rms of ball speeds < .3 mm/s and largest < 1.7 mm/s at three checks 20 ms apart). Bodies lost
 // over the rim are taken out and counted in *lost (NULL is allowed).
 ty_pile_end ty_pile_settle(ty_pile* pile, float max_seconds, ty_workers* workers, int* lost);
+
+// Goes on with a settling that ended by time or was canceled as if it had not, up to max_seconds from its begin; one
+// that ended at rest stays at rest. After any other change to the pile it is ty_pile_settle.
+ty_pile_end ty_pile_settle_on(ty_pile* pile, float max_seconds, ty_workers* workers, int* lost);
+
+// All that the next substep and those after it depend on, but def and what moves the walls; of a pile whose bodies have
+// changed their size since a substep found them anew, nearly all. The caller frees *out.
+TY_CHECKED ty_status ty_pile_save(const ty_pile* pile, ty_bytes* out, ty_error* error);
+// Into a new pile of the same def without bodies, whose walls move already if they do: what follows is, to the bit,
+// what follows after the save. On failure (TY_BAD_FILE: damaged, or of another pile) there may be bodies: destroy it.
+TY_CHECKED ty_status ty_pile_restore(ty_pile* pile, const void* bytes, size_t size, ty_workers* workers,
+                                     ty_error* error);
 
 // Projects overlaps away without velocities: for display; keep a copy of the bodies to go on from.
 void ty_pile_polish(ty_pile* pile, int sweeps, ty_workers* workers);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Aggregates: prototypes and where they stand. Files are GLB with EXT_mesh_gpu_instancing.
 #pragma once
+#include <tsuya/base/file.h>
 #include <tsuya/geometry/mesh.h>
 
 typedef struct ty_instance_attribute
@@ -23,9 +24,10 @@ typedef struct ty_aggregate
     ty_vec3* spins;            // [instance_count] rad/s, about it, in aggregate space; NULL = none are known
     ty_instance_attribute* attributes;
     int attribute_count;
-    char* recipe;  // the text that made it, or NULL
-    char* hash;    // hex, or NULL
-    char* metrics; // a JSON object as text, or NULL
+    char* recipe;   // the text that made it, or NULL
+    char* hash;     // hex, or NULL
+    char* metrics;  // a JSON object as text, or NULL
+    ty_bytes state; // what its generator needs to go on, or empty; files are read without it
 } ty_aggregate;
 
 TY_CHECKED ty_aggregate* ty_aggregate_create(uint32_t instance_count, int prototype_count); // NULL: no memory
@@ -45,6 +47,12 @@ TY_CHECKED ty_status ty_aggregate_write(const char* path, const ty_aggregate* ag
 // value is TY_BAD_FILE that names the instance.
 TY_CHECKED ty_status ty_aggregate_read(const char* path, const ty_mesh* points_prototype, ty_aggregate** out,
                                        ty_error* error);
+
+// The state that a GLB holds, freed by the caller; a file without is TY_BAD_FILE. No importer is asked.
+TY_CHECKED ty_status ty_aggregate_read_state(const char* path, ty_bytes* out, ty_error* error);
+// The same from memory.
+TY_CHECKED ty_status ty_aggregate_find_state(const char* name, const void* bytes, size_t size, ty_bytes* out,
+                                             ty_error* error);
 
 // Our own bounded check of a GLB's header, chunks and lengths, before any library sees it. For fuzzing too.
 TY_CHECKED ty_status ty_glb_check(const char* name, const void* bytes, size_t size, ty_error* error);
