@@ -44,6 +44,8 @@ ty_xpbd* kit_soft(kit* k)
     def.modulus = k->mechanics.modulus;
     def.bridge = k->mechanics.bridge;
     def.container = k->container;
+    if (recipe_is_mould(k->recipe) && k->recipe->press.from == TY_PRESS_AROUND)
+        def.gravity = ty_vec3_make(0.0f, 0.0f, 0.0f); // a hand turns what it presses: nothing sinks in it
     ty_xpbd* x = ty_xpbd_create(&def);
     for (int i = 0; i < ty_pile_count(k->pile); i++)
     {
