@@ -102,7 +102,7 @@ static void contacts_lay(ty_pile* pile)
         p->slot = slot;
         slot += p->active + pile->cohesive;
     }
-    list_reserve((void**)&pile->contacts, &pile->contact_capacity, slot, sizeof(contact));
+    list_reserve((void**)&pile->contacts, &pile->contact_capacity, slot + 1, sizeof(contact)); // never none at all
 }
 
 static void pair_prepare(ty_pile* pile, pair* p)
