@@ -75,8 +75,6 @@ TY_CHECKED ty_status kit_rest(kit* k, ty_error* error);
 ty_body kit_body(kit* k, ty_vec3 position, float steepest);
 // Elements, container, and a pile of them without a body.
 TY_CHECKED ty_status kit_pile(kit* k, ty_error* error);
-// Settles; drops a new element for each that is lost over the rim.
-TY_CHECKED ty_status kit_rest(kit* k, ty_error* error);
 TY_CHECKED ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error);
 
 // film.c

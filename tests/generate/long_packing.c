@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How dense ellipsoids twice as long as wide pack: without friction at least .70 of the space, and the less the more
 // friction there is. Volumes are those of the meshes.
-#include "made_aggregate.h"
+#include "recipe_made.h"
 
 static double packing(const char* mesh, float friction)
 {
@@ -20,10 +20,10 @@ static double packing(const char* mesh, float friction)
     r.settle.friction = friction;
     r.settle.rolling = friction > 0.0f ? 0.001f : 0.0f;
     r.settle.max_seconds = 2.5f;
-    ty_aggregate* a = rest_made(&r, NULL);
-    double phi = rest_metric(a, "phi");
+    ty_aggregate* a = made(&r, NULL);
+    double phi = metric(a, "phi");
     print_message("friction %.1f: phi %.4f (balls %.4f), contacts %.2f\n", (double)friction, phi,
-                  rest_metric(a, "phi_balls"), rest_metric(a, "loaded"));
+                  metric(a, "phi_balls"), metric(a, "loaded"));
     ty_aggregate_destroy(a);
     return phi;
 }
@@ -39,10 +39,7 @@ static void test_friction(void** state)
     ty_error error;
     assert_int_equal(ty_shape_create(&def, &mesh, &error), TY_OK);
     char path[] = "/tmp/tsuya_ellipsoid_XXXXXX.ply";
-    int file = mkstemps(path, 4);
-    assert_true(file >= 0);
-    close(file);
-    assert_int_equal(ty_ply_write(path, mesh, &error), TY_OK);
+    mesh_keep(mesh, path);
     ty_mesh_destroy(mesh);
     const float frictions[] = {0.0f, 0.1f, 0.3f, 0.8f};
     double last = 1.0;

@@ -2,9 +2,12 @@
 // Aggregates made from recipes: those that succeed, and those that are refused with an answer that helps.
 #pragma once
 #include "base/cmocka_all.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <tsuya/generate/aggregate_recipe.h>
+#include <tsuya/geometry/mesh_file.h>
+#include <unistd.h>
 
 static inline ty_aggregate* made(const ty_aggregate_recipe* recipe, ty_workers* workers)
 {
@@ -32,10 +35,22 @@ static inline void assert_refused(const ty_aggregate_recipe* recipe, const char*
     assert_fails(recipe, TY_BAD_INPUT, field, range);
 }
 
-// name: in quotes, as in the metrics' JSON.
 static inline double metric(const ty_aggregate* a, const char* name)
 {
-    const char* at = strstr(a->metrics, name);
-    assert_non_null(at);
-    return atof(at + strlen(name) + 2);
+    char key[64];
+    (void)snprintf(key, sizeof key, "\"%s\": ", name);
+    const char* at = strstr(a->metrics, key);
+    if (!at)
+        fail_msg("no %s in %s", name, a->metrics);
+    return atof(at + strlen(key));
+}
+
+// Into a new file, whose name replaces the XXXXXX of path, before an ending of four letters.
+static inline void mesh_keep(const ty_mesh* mesh, char* path)
+{
+    ty_error error;
+    int file = mkstemps(path, 4);
+    assert_true(file >= 0);
+    close(file);
+    assert_int_equal(ty_ply_write(path, mesh, &error), TY_OK);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Piles that must come to rest, and what at rest means: bounds of speeds, drift, overlaps, contacts and packing.
 #pragma once
-#include "made_aggregate.h"
 #include "mesh_overlap.h"
+#include "recipe_made.h"
 
 typedef struct rest_bounds
 {
@@ -23,7 +23,7 @@ static void rest_below_of(const char* what, double value, double most)
 
 static void rest_below(const ty_aggregate* a, const char* name, double most)
 {
-    rest_below_of(name, rest_metric(a, name), most);
+    rest_below_of(name, metric(a, name), most);
 }
 
 // Speeds in mm/s; overlaps and the drift over a further second in % of the width.
@@ -32,11 +32,10 @@ static void assert_at_rest(const char* name, const ty_aggregate* a, const rest_b
     print_message(
         "%-12s %5.0f: v_rms %.4f mm/s, drift %.4f / %.3f %%, overlap %.3f / %.4f %%, polished %.4f / %.5f %%, "
         "phi %.3f (balls %.3f), contacts %.2f, %.0f substeps\n",
-        name, rest_metric(a, "count"), rest_metric(a, "speed_rms_mm_s"), rest_metric(a, "drift_mean_percent"),
-        rest_metric(a, "drift_max_percent"), rest_metric(a, "settled_overlap_max_percent"),
-        rest_metric(a, "settled_overlap_mean_percent"), rest_metric(a, "overlap_max_percent"),
-        rest_metric(a, "overlap_mean_percent"), rest_metric(a, "phi"), rest_metric(a, "phi_balls"),
-        rest_metric(a, "loaded"), rest_metric(a, "substeps"));
+        name, metric(a, "count"), metric(a, "speed_rms_mm_s"), metric(a, "drift_mean_percent"),
+        metric(a, "drift_max_percent"), metric(a, "settled_overlap_max_percent"),
+        metric(a, "settled_overlap_mean_percent"), metric(a, "overlap_max_percent"), metric(a, "overlap_mean_percent"),
+        metric(a, "phi"), metric(a, "phi_balls"), metric(a, "loaded"), metric(a, "substeps"));
     assert_non_null(strstr(a->metrics, "\"rest\": true"));
     rest_below(a, "speed_rms_mm_s", 0.3);
     rest_below(a, "drift_mean_percent", 0.05);
@@ -46,8 +45,8 @@ static void assert_at_rest(const char* name, const ty_aggregate* a, const rest_b
     rest_below(a, "overlap_max_percent", 0.1);
     rest_below(a, "overlap_mean_percent", 0.01);
     rest_below(a, "floating", 0.0);
-    rest_between("phi_balls", rest_metric(a, "phi_balls"), bounds->phi);
-    rest_between("loaded", rest_metric(a, "loaded"), bounds->contacts);
+    rest_between("phi_balls", metric(a, "phi_balls"), bounds->phi);
+    rest_between("loaded", metric(a, "loaded"), bounds->contacts);
 }
 
 // Of the meshes as they are rendered, in % of the width; slot as of mesh_overlap_measure.

@@ -2,8 +2,6 @@
 // Recipes: tables and defaults agree, impossible wishes name their bound, and small aggregates come out at rest.
 #include "recipe_made.h"
 #include <tsuya/base/hash.h>
-#include <tsuya/geometry/mesh_file.h>
-#include <unistd.h>
 
 // Each number of a default lies in the range of its row, in the unit of the row.
 static void assert_in_table(const ty_param_table* table, const char* def)
@@ -233,10 +231,7 @@ static void test_mesh(void** state)
     ty_error error;
     assert_int_equal(ty_shape_create(&torus, &mesh, &error), TY_OK);
     char path[] = "/tmp/tsuya_container_XXXXXX.ply";
-    int file = mkstemps(path, 4);
-    assert_true(file >= 0);
-    close(file);
-    assert_int_equal(ty_ply_write(path, mesh, &error), TY_OK);
+    mesh_keep(mesh, path);
     ty_aggregate_recipe r = small_bowl();
     r.container.kind = TY_CONTAINER_MESH;
     r.container.mesh = path;

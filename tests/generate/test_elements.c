@@ -4,10 +4,8 @@
 #include "recipe_made.h"
 #include <stdio.h>
 #include <tsuya/base/file.h>
-#include <tsuya/geometry/mesh_file.h>
 #include <tsuya/geometry/shape.h>
 #include <tsuya/geometry/voxels.h>
-#include <unistd.h>
 
 static const ty_seed seed = {5};
 static const int solids[] = {TY_ELEMENT_BALL, TY_ELEMENT_ICE,  TY_ELEMENT_GRAPE,

@@ -144,8 +144,8 @@ static ty_aggregate_recipe rice_ball(float adhesion, float tension)
 static double kept_height(const ty_aggregate_recipe* r)
 {
     ty_aggregate* a = made(r, NULL);
-    double kept = metric(a, "\"height_mm\"") / metric(a, "\"released_height_mm\"");
-    print_message("%u grains keep %.3f of %.1f mm\n", a->instance_count, kept, metric(a, "\"released_height_mm\""));
+    double kept = metric(a, "height_mm") / metric(a, "released_height_mm");
+    print_message("%u grains keep %.3f of %.1f mm\n", a->instance_count, kept, metric(a, "released_height_mm"));
     assert_non_null(strstr(a->metrics, "\"rest\": true"));
     ty_aggregate_destroy(a);
     return kept;

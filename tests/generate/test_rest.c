@@ -9,7 +9,7 @@ static void test_rice(void** state)
     ty_aggregate_recipe r = rice_bowl(300);
     r.element.variants = 4;
     r.element.divisions = 6;
-    ty_aggregate* a = rest_made(&r, NULL);
+    ty_aggregate* a = made(&r, NULL);
     assert_at_rest("rice bowl", a, &bounds);
     assert_meshes_apart(a, NULL, 3e-3f, 5.0, 1.5);
     ty_aggregate_destroy(a);
@@ -20,7 +20,7 @@ static void test_roe(void** state)
     (void)state;
     const rest_bounds bounds = {{0.0, 0.66}, {2.0, 7.0}}; // too few for phi
     ty_aggregate_recipe r = roe_bowl(60);
-    ty_aggregate* a = rest_made(&r, NULL);
+    ty_aggregate* a = made(&r, NULL);
     assert_at_rest("roe bowl", a, &bounds);
     assert_meshes_apart(a, "membrane", 6.2e-3f, 3.0, 1.5);
     ty_aggregate_destroy(a);

@@ -3,7 +3,6 @@
 #include "recipe_made.h"
 #include <stdio.h>
 #include <tsuya/base/file.h>
-#include <unistd.h>
 
 enum
 {

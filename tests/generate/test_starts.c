@@ -23,15 +23,15 @@ static void the_thesis_leaves_no_overlap(void** state)
     ty_aggregate_recipe r = small_box();
     r.fill.start = TY_FILL_THESIS;
     ty_aggregate* a = made(&r, NULL);
-    double removed = metric(a, "\"removed\"");
+    double removed = metric(a, "removed");
     assert_true(removed > 0.0 && removed < 160.0);
     assert_int_equal((int)a->instance_count, 160 - (int)removed);
-    assert_true(metric(a, "\"start_overlap_max_percent\"") < 0.01);
+    assert_true(metric(a, "start_overlap_max_percent") < 0.01);
     ty_aggregate_destroy(a);
     r.fill.thesis.remove = 1.05f;
     a = made(&r, NULL);
-    assert_true(metric(a, "\"removed\"") < removed);
-    assert_true(metric(a, "\"start_overlap_max_percent\"") > 1.0);
+    assert_true(metric(a, "removed") < removed);
+    assert_true(metric(a, "start_overlap_max_percent") > 1.0);
     ty_aggregate_destroy(a);
     r.fill.thesis.remove = 100.0f;
     a = made(&r, NULL);
@@ -48,12 +48,12 @@ static void a_lattice_repeats(void** state)
     r.element.variation = 0.0f;
     ty_aggregate* a = made(&r, NULL);
     assert_int_equal((int)a->instance_count, 160);
-    assert_true(metric(a, "\"start_repeat_percent\"") > 60.0);
-    assert_true(metric(a, "\"start_overlap_max_percent\"") < 1.0);
+    assert_true(metric(a, "start_repeat_percent") > 60.0);
+    assert_true(metric(a, "start_overlap_max_percent") < 1.0);
     ty_aggregate_destroy(a);
     r.fill.start = TY_FILL_INFLATE;
     a = made(&r, NULL);
-    assert_true(metric(a, "\"start_repeat_percent\"") < 12.0);
+    assert_true(metric(a, "start_repeat_percent") < 12.0);
     ty_aggregate_destroy(a);
 }
 
@@ -63,7 +63,7 @@ static void targets_agree(void** state)
     (void)state;
     ty_aggregate_recipe r = small_box();
     ty_aggregate* a = made(&r, NULL);
-    double level = metric(a, "\"level_mm\"");
+    double level = metric(a, "level_mm");
     ty_aggregate_destroy(a);
     r.fill.target = TY_FILL_LEVEL;
     r.fill.level = (float)(level * 1e-3) + r.container.shape.size.y;
