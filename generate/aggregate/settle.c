@@ -184,12 +184,15 @@ static void contact_solve(ty_pile* pile, const pair* p, contact* c, float bias, 
     pair_kick(pile, p, c, change);
 }
 
-// A sleeper wakes when it is hit.
-static void sleepers_wake(ty_pile* pile, const pair* p, const contact* c)
+// A sleeper wakes when it is hit, or when what a bridge ties it to moves.
+static void sleepers_wake(ty_pile* pile, const pair* p, const contact* c, bool tied)
 {
     motion *a = &pile->motions[p->a], *b = p->b >= 0 ? &pile->motions[p->b] : NULL;
     bool sleeper = a->asleep || (b && b->asleep);
-    if (!sleeper || ty_dot(relative_velocity(pile, p, c), c->normal) > -WAKE_SPEED)
+    if (!sleeper)
+        return;
+    ty_vec3 u = relative_velocity(pile, p, c);
+    if ((tied ? ty_length(u) : -ty_dot(u, c->normal)) < WAKE_SPEED)
         return;
     a->woken = a->asleep;
     if (b)
@@ -206,12 +209,14 @@ static void pair_solve(ty_pile* pile, pair* p)
     for (int i = p->slot; i < p->slot + p->active; i++)
     {
         contact* c = &pile->contacts[i];
-        sleepers_wake(pile, p, c);
+        sleepers_wake(pile, p, c, false);
         if (c->gap > 0.0f)
             contact_solve(pile, p, c, c->gap / h, 0.0f);
         else
             contact_solve(pile, p, c, ty_max(rate * c->gap, -PUSH_OUT), softness);
     }
+    if (p->pulled)
+        sleepers_wake(pile, p, &pile->contacts[p->slot + p->active], true);
 }
 
 static void pair_relax(ty_pile* pile, pair* p)

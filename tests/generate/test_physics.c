@@ -331,6 +331,29 @@ static void test_bridge_forms_at_contact(void** state)
     ty_pile_destroy(pile);
 }
 
+// Two balls that a bridge ties have fallen asleep, while two more are still under way: the first of these wakes the
+// second ball and stops there, the other one drives both on, across. The first ball is not hit, but dragged along.
+static void test_bridge_wakes(void** state)
+{
+    (void)state;
+    ty_pile_def def = weightless(0.0f);
+    def.bridge = water();
+    ty_pile* pile = ty_pile_create(&def);
+    ty_body four[4] = {ball_at(0.0f, 0.0f, 0.0f), ball_at(2.0f * RADIUS, 0.0f, 0.0f)};
+    for (int i = 2; i < 4; i++)
+    {
+        four[i] = ball_at(2.0f * RADIUS, 2.0f * RADIUS + 0.022f, 0.0f);
+        four[i].position.y += (float)(i - 2) * (2.0f * RADIUS + 1e-3f);
+        four[i].velocity.y = -0.1f;
+    }
+    ty_pile_add(pile, four, 4);
+    ty_pile_settle(pile, 0.3f, NULL, NULL);
+    const ty_body* b = ty_pile_bodies(pile);
+    assert_true(b[1].position.y < -0.5f * RADIUS);
+    assert_true(ty_length(ty_sub(b[0].position, four[0].position)) > 0.02f * RADIUS);
+    ty_pile_destroy(pile);
+}
+
 // Turns gravity round under a ball at the floor: it hangs when what pulls is more than its weight.
 static bool hangs(ty_bridge_def bridge)
 {
@@ -456,6 +479,7 @@ int main(void)
         cmocka_unit_test(test_force_curve),
         cmocka_unit_test(test_rupture_takes_its_work),
         cmocka_unit_test(test_bridge_forms_at_contact),
+        cmocka_unit_test(test_bridge_wakes),
         cmocka_unit_test(test_a_ball_hangs),
         cmocka_unit_test(test_belt_and_lift),
         cmocka_unit_test(test_turned_box),
