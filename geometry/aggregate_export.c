@@ -7,18 +7,25 @@
 
 const char* const ty_aggregate_endings[] = {"glb", "usda", "ply", "obj", NULL};
 
-static ty_status write_realised(const char* path, const char* ending, const ty_aggregate* a, ty_error* error)
+ty_status ty_mesh_export(const char* path, const ty_mesh* mesh, ty_error* error)
+{
+    const char* ending = ty_path_extension(path);
+    if (strcmp(ending, "obj") == 0)
+        return ty_obj_write(path, mesh, error);
+    if (strcmp(ending, "ply") == 0)
+        return ty_ply_write(path, mesh, error);
+    if (strcmp(ending, "glb") == 0)
+        return ty_glb_write_mesh(path, mesh, error);
+    return ty_error_set_at(error, TY_BAD_INPUT, path, 0, 0, "a realised mesh goes to .glb, .ply or .obj");
+}
+
+static ty_status write_realised(const char* path, const ty_aggregate* a, ty_error* error)
 {
     ty_mesh* mesh;
     ty_status status = ty_aggregate_realise(a, &mesh, error);
     if (status != TY_OK)
         return status;
-    if (strcmp(ending, "obj") == 0)
-        status = ty_obj_write(path, mesh, error);
-    else if (strcmp(ending, "ply") == 0)
-        status = ty_ply_write(path, mesh, error);
-    else
-        status = ty_glb_write_mesh(path, mesh, error);
+    status = ty_mesh_export(path, mesh, error);
     ty_mesh_destroy(mesh);
     return status;
 }
@@ -36,6 +43,6 @@ ty_status ty_aggregate_export(const char* path, const ty_aggregate* a, bool real
     if (strcmp(ending, "usda") == 0)
         return ty_error_set_at(error, TY_BAD_INPUT, path, 0, 0, "a realised mesh goes to .glb, .ply or .obj");
     if (realised || strcmp(ending, "obj") == 0)
-        return write_realised(path, ending, a, error);
+        return write_realised(path, a, error);
     return strcmp(ending, "ply") == 0 ? ty_aggregate_write_points(path, a, error) : ty_aggregate_write(path, a, error);
 }

@@ -17,6 +17,9 @@ for name in heap eggs; do
     expect 0 "$tsuya" export $name.glb -o $name.usda
     python3 "$TSUYA_SOURCE/tests/cli/export_files.py" $name.glb $name.usda || fail "$name: not as the specifications say"
     for ending in ply obj glb; do expect 0 "$tsuya" export $name.glb --realise -o $name.mesh.$ending; done
+    expect 0 "$tsuya" export $name.glb --facets -o $name.facets.glb
+    says "facets: "
+    says "the volume changes by"
 done
 
 # The recipe gives the same files by itself.
@@ -58,6 +61,20 @@ expect 3 "$tsuya" pack heap.yaml -o 'none.##.glb'
 says "animate.frames"
 absent none.01.glb
 
+# Contact facets: another mesh, the same for any number of threads; with gaps closed another one again.
+for threads in 1 2 3; do
+    expect 0 "$tsuya" export heap.glb --facets --threads $threads -o heap.facets.ply
+    cp heap.facets.ply $threads.facets.ply
+    same $threads.facets.ply 1.facets.ply
+done
+cmp -s heap.facets.ply heap.mesh.ply && fail "facets move nothing"
+expect 0 "$tsuya" export heap.glb --facets --close 0.2 -o heap.closed.ply
+cmp -s heap.facets.ply heap.closed.ply && fail "--close moves nothing"
+expect 2 "$tsuya" export heap.glb --close 0.2 -o heap.closed.ply
+says "--facets"
+expect 3 "$tsuya" export heap.glb --facets -o heap.facets.usda
+absent heap.facets.usda
+
 expect 2 "$tsuya" export heap.glb
 says "give -o"
 expect 2 "$tsuya" export heap.glb -o heap.abc
@@ -73,5 +90,6 @@ command -v blender >/dev/null || skip "no Blender"
 count() { "$tsuya" info "$1" --json | python3 -c 'import json, sys; print(json.load(sys.stdin)["vertices"])'; }
 list=
 for ending in glb ply obj; do list="$list heap.mesh.$ending=$(count heap.mesh.ply)"; done
+list="$list heap.facets.glb=$(count heap.mesh.ply)"
 expect 0 blender -b --factory-startup --python "$TSUYA_SOURCE/tests/cli/blender_import.py" -- $list
 for file in $list; do prints "imported ${file%=*}"; done
