@@ -147,6 +147,34 @@ static float inset_of(const kit* k)
     return (ty_container_is_open(k->container) ? 0.25f : 0.45f) * k->mix.width;
 }
 
+// How many of the count begin in the container, the space they take, and its upper surface. The sum over the space that
+// a count came from and the plan sample it each their own way: a count that nobody gave is one that the plan holds.
+static ty_status kit_plan(kit* k, float inset, int* count, double* volume, ty_error* error)
+{
+    const ty_fill_def* fill = &k->recipe->fill;
+    for (bool given = fill->target == TY_FILL_COUNT;; given = true)
+    {
+        double capacity;
+        *count = k->count;
+        if (ty_container_is_open(k->container) && fill->start == TY_FILL_INFLATE)
+            *count -= (int)((float)k->count * fill->sprinkle);
+        *volume = (double)*count * (double)k->mix.volume / (double)fill->density;
+        ty_status status = ty_fill_plan(k->container, *volume, fill->heap, inset, &k->top, &capacity, error);
+        int most = (int)(capacity / *volume * (double)k->count);
+        if (status == TY_OK && !ty_container_is_open(k->container) && capacity > 1.02 * *volume)
+            ty_log(TY_LOG_WARNING, // what should be a rabbit has no ears
+                   "fill.count: %d grains at a density of %g fill %.0f %% of the container, from below; %d fill it",
+                   k->count, (double)fill->density, 100.0 * *volume / capacity, most);
+        if (status == TY_OK)
+            return TY_OK;
+        if (given || most < 1)
+            return ty_error_set(error, status,
+                                "fill.count: %d grains at a density of %g; the container holds at most %d", k->count,
+                                (double)fill->density, most);
+        k->count = most;
+    }
+}
+
 ty_status kit_fill(kit* k, ty_error* error)
 {
     const ty_fill_def* fill = &k->recipe->fill;
@@ -154,18 +182,11 @@ ty_status kit_fill(kit* k, ty_error* error)
     ty_status status = kit_count(k, "", inset, &k->count, error);
     if (status != TY_OK)
         return status;
-    int count = k->count;
-    if (ty_container_is_open(k->container) && fill->start == TY_FILL_INFLATE)
-        count -= (int)((float)count * fill->sprinkle);
-    double volume = (double)count * (double)k->mix.volume / (double)fill->density, capacity;
-    status = ty_fill_plan(k->container, volume, fill->heap, inset, &k->top, &capacity, error);
+    int count;
+    double volume;
+    status = kit_plan(k, inset, &count, &volume, error);
     if (status != TY_OK)
-        return ty_error_set(error, status, "fill.count: %d grains at a density of %g; the container holds at most %d",
-                            k->count, (double)fill->density, (int)(capacity / volume * (double)k->count));
-    if (!ty_container_is_open(k->container) && capacity > 1.02 * volume) // what should be a rabbit has no ears
-        ty_log(TY_LOG_WARNING,
-               "fill.count: %d grains at a density of %g fill %.0f %% of the container, from below; %d fill it",
-               k->count, (double)fill->density, 100.0 * volume / capacity, (int)(capacity / volume * (double)k->count));
+        return status;
     if (fill->start == TY_FILL_POUR)
     {
         k->wanted[0] = count;

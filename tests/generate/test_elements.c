@@ -243,6 +243,32 @@ static void flakes_pack_with_defaults(void** state)
     ty_aggregate_destroy(a);
 }
 
+// A count that follows from a density is one that goes in, also where few do.
+static void few_go_in_by_density(void** state)
+{
+    (void)state;
+    for (float radius = 0.03f; radius < 0.06f; radius += 0.004f)
+    {
+        ty_aggregate_recipe r = mixed(NULL, 0);
+        r.element = def_of(TY_ELEMENT_BALL);
+        r.element.length = 0.014f;
+        r.container = ty_container_def_default();
+        r.container.shape.radius = radius;
+        r.container.shape.height = 0.025f;
+        r.fill.target = TY_FILL_DENSITY;
+        r.fill.heap = 0.014f;
+        r.fill.sprinkle = 0.0f;
+        r.settle.rolling = 0.05f;
+        ty_aggregate* a = NULL;
+        ty_error error;
+        ty_status status = ty_aggregate_make(&r, NULL, &a, &error);
+        if (!a)
+            fail_msg("radius %g: %d: %s", (double)radius, (int)status, error.text);
+        assert_true(a->instance_count >= 3);
+        ty_aggregate_destroy(a);
+    }
+}
+
 static void impossible_ones_are_refused(void** state)
 {
     (void)state;
@@ -297,6 +323,7 @@ int main(void)
         cmocka_unit_test(fit_holds_elsewhere),
         cmocka_unit_test(balls_stay_within),
         cmocka_unit_test(flakes_pack_with_defaults),
+        cmocka_unit_test(few_go_in_by_density),
         cmocka_unit_test(mesh_weighs_as_a_box),
         cmocka_unit_test(same_again_and_each_its_own),
         cmocka_unit_test(cultivars_differ_in_length),
