@@ -71,6 +71,9 @@ float cooking_wet_basis(const cooking* c, float minute, float moisture, float ex
 // make.c
 // Settles; drops a new grain for each that is lost over the rim.
 TY_CHECKED ty_status kit_rest(kit* k, ty_error* error);
+// Makes bodies those of the pile, with a push of about the speed of a fall through their width for those not held: they
+// are wedged where none can be dropped.
+void kit_stir(kit* k, ty_body* bodies, const bool* held);
 // A body of a random element, turned as the recipe allows and at most steepest off the horizontal.
 ty_body kit_body(kit* k, ty_vec3 position, float steepest);
 // Elements, container, and a pile of them without a body.
@@ -125,5 +128,5 @@ bool recipe_is_mould(const ty_aggregate_recipe* r);
 bool kit_stands(const kit* k); // it ends standing by itself: pressed, moulded, or elastic and to come to rest
 float kit_top(const kit* k);   // m, of the topmost centre over the lowest point of the container
 TY_CHECKED ty_status kit_release(kit* k, ty_error* error); // takes the mould off, if there is one that goes
-// Does that, and lets the pile come to rest as it is: nothing is put anew or stirred.
+// Does that, and lets the pile come to rest as it is: nothing is put anew, and only what floats is stirred.
 TY_CHECKED ty_status kit_stand(kit* k, ty_pile_metrics* metrics, ty_error* error);

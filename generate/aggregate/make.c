@@ -109,8 +109,7 @@ ty_status kit_rest(kit* k, ty_error* error)
     return TY_OK;
 }
 
-// A push of about the speed of a fall through its width, for grains that are wedged where none can be dropped.
-static void floating_stir(kit* k, ty_body* bodies, const bool* held)
+void kit_stir(kit* k, ty_body* bodies, const bool* held)
 {
     float speed = sqrtf(2.0f * 9.81f * k->mix.width);
     for (int i = 0; i < ty_pile_count(k->pile); i++)
@@ -176,7 +175,7 @@ static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
         if (ty_container_is_open(k->container))
             floating_replace(k, held);
         else
-            floating_stir(k, kept, held);
+            kit_stir(k, kept, held);
     }
     ty_free(kept);
     ty_free(held);

@@ -4,6 +4,13 @@
 #include <string.h>
 #include <tsuya/base/log.h>
 
+enum
+{
+    ROUNDS = 12, // of settling and looking for what floats
+};
+
+#define STILL 0.08e-3f // m/s, rms: drifts by less than .05 % of the width in a second
+
 bool recipe_is_mould(const ty_aggregate_recipe* r)
 {
     return r->container.role == TY_CONTAINER_MOULD;
@@ -53,11 +60,25 @@ ty_status kit_release(kit* k, ty_error* error)
     return status;
 }
 
+// To rest, and on while it is calm but not still: what sticks gives way slowly.
+static ty_pile_end stand_still(kit* k)
+{
+    ty_pile_end end = TY_PILE_REST;
+    float speed = TY_FLOAT_MAX;
+    for (int round = 0; end == TY_PILE_REST && speed > STILL && round < ROUNDS; round++)
+    {
+        end = TY_PILE_LOST;
+        for (int lost = 0; end == TY_PILE_LOST && ty_pile_count(k->pile) > 0; k->lost += lost)
+            end = ty_pile_settle(k->pile, k->recipe->settle.max_seconds, k->workers, &lost);
+        float largest;
+        ty_pile_speeds(k->pile, &speed, &largest);
+    }
+    return end;
+}
+
 static ty_status stand_settle(kit* k, ty_error* error)
 {
-    ty_pile_end end = TY_PILE_LOST;
-    for (int lost = 0; end == TY_PILE_LOST && ty_pile_count(k->pile) > 0; k->lost += lost)
-        end = ty_pile_settle(k->pile, k->recipe->settle.max_seconds, k->workers, &lost);
+    ty_pile_end end = stand_still(k);
     k->rest = end == TY_PILE_REST;
     k->count = ty_pile_count(k->pile);
     if (end == TY_PILE_CANCELED)
@@ -67,26 +88,42 @@ static ty_status stand_settle(kit* k, ty_error* error)
     return ty_error_set(error, TY_BAD_INPUT, "container: nothing stays where the mould was");
 }
 
+// Polishes a copy; whether nothing floats after that, else the unpolished pile goes on with that stirred: a grain that
+// balances on another.
+static bool stand_finish(kit* k, bool last, ty_pile_metrics* metrics)
+{
+    int count = ty_pile_count(k->pile);
+    ty_body* rest = TY_ALLOC(ty_body, count);
+    bool* held = TY_ALLOC(bool, count);
+    memcpy(rest, ty_pile_bodies(k->pile), (size_t)count * sizeof *rest);
+    ty_pile_measure(k->pile, &k->settled, NULL);
+    ty_pile_polish(k->pile, k->recipe->settle.polish, k->workers);
+    ty_pile_measure(k->pile, metrics, held);
+    metrics->speed_rms = k->settled.speed_rms;
+    metrics->speed_max = k->settled.speed_max;
+    bool done = last || metrics->floating == 0 || !k->rest;
+    if (done)
+        kit_watch(k, rest);
+    else
+        kit_stir(k, rest, held);
+    ty_free(rest);
+    ty_free(held);
+    return done;
+}
+
 ty_status kit_stand(kit* k, ty_pile_metrics* metrics, ty_error* error)
 {
     double start = ty_time_now();
     ty_status status = kit_release(k, error);
-    if (status == TY_OK)
+    bool done = false;
+    for (int round = 1; status == TY_OK && !done; round++)
+    {
         status = stand_settle(k, error);
-    if (status != TY_OK)
-        return status;
+        done = status == TY_OK && stand_finish(k, round == ROUNDS, metrics);
+    }
     k->stood = kit_top(k);
-    ty_log(TY_LOG_INFO, "aggregate: stands by itself after %.1f s, top element %.1f mm high, %.1f before",
-           ty_time_now() - start, (double)k->stood * 1e3, (double)k->released * 1e3);
-    int count = ty_pile_count(k->pile);
-    ty_body* rest = TY_ALLOC(ty_body, count);
-    memcpy(rest, ty_pile_bodies(k->pile), (size_t)count * sizeof *rest);
-    ty_pile_measure(k->pile, &k->settled, NULL);
-    ty_pile_polish(k->pile, k->recipe->settle.polish, k->workers);
-    ty_pile_measure(k->pile, metrics, NULL);
-    metrics->speed_rms = k->settled.speed_rms;
-    metrics->speed_max = k->settled.speed_max;
-    kit_watch(k, rest);
-    ty_free(rest);
-    return TY_OK;
+    if (status == TY_OK)
+        ty_log(TY_LOG_INFO, "aggregate: stands by itself after %.1f s, top element %.1f mm high, %.1f before",
+               ty_time_now() - start, (double)k->stood * 1e3, (double)k->released * 1e3);
+    return status;
 }

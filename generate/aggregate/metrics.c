@@ -6,7 +6,7 @@
 #define LOADED 0.01f     // of the weight of a mean grain: what presses by more is a contact that carries
 #define TOUCH_GAP 1e-6f  // m: up to here they touch
 
-void pile_speeds(const ty_pile* pile, float* rms, float* largest)
+void ty_pile_speeds(const ty_pile* pile, float* rms, float* largest)
 {
     double sum = 0.0;
     float most = 0.0f;
@@ -108,6 +108,6 @@ void ty_pile_measure(ty_pile* pile, ty_pile_metrics* out, bool* held)
     out->neighbours = pile->count > 0 ? (float)(neighbours / pile->count) : 0.0f;
     out->overlap_max = o.largest / pile->mean_width;
     out->overlap_mean = o.count > 0 ? (float)(o.sum / o.count) / pile->mean_width : 0.0f;
-    pile_speeds(pile, &out->speed_rms, &out->speed_max);
+    ty_pile_speeds(pile, &out->speed_rms, &out->speed_max);
     pile_packing(pile, out);
 }

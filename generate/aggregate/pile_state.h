@@ -200,7 +200,6 @@ void pile_project(ty_pile* pile, ty_workers* workers); // one sweep of position 
 void pile_refresh_all(ty_pile* pile);
 
 // metrics.c
-void pile_speeds(const ty_pile* pile, float* rms, float* largest); // of the balls, m/s
 
 // packing.c
 void pile_packing(ty_pile* pile, ty_pile_metrics* out); // phi and phi_balls

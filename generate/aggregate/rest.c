@@ -51,7 +51,7 @@ static void all_wake(ty_pile* pile)
 bool ty_pile_is_calm(const ty_pile* pile)
 {
     float rms, largest;
-    pile_speeds(pile, &rms, &largest);
+    ty_pile_speeds(pile, &rms, &largest);
     return rms < QUIET_RMS && largest < QUIET_MAX && pile->time > QUIET_AFTER;
 }
 

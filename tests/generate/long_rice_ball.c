@@ -39,10 +39,10 @@ static void test_bands(void** state)
         {
             ty_aggregate_recipe r = rice_ball(states[s].wet_basis, seed);
             ty_aggregate* a = made(&r, NULL);
-            double kept = metric(a, "\"height_mm\"") / metric(a, "\"released_height_mm\"");
+            double kept = metric(a, "height_mm") / metric(a, "released_height_mm");
             print_message("wet basis %.2f, seed %d: %u grains keep %.3f of %.1f mm, %.4f mm/s\n",
                           (double)states[s].wet_basis, (int)seed, a->instance_count, kept,
-                          metric(a, "\"released_height_mm\""), metric(a, "\"speed_rms_mm_s\""));
+                          metric(a, "released_height_mm"), metric(a, "speed_rms_mm_s"));
             assert_non_null(strstr(a->metrics, "\"rest\": true"));
             assert_true(kept >= (double)states[s].least && kept <= (double)states[s].most);
             sum += kept / 3.0;

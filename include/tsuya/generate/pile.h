@@ -103,6 +103,7 @@ void ty_pile_step(ty_pile* pile, ty_workers* workers);
 // Speeds are below the bounds of rest: rms of the balls < .3 mm/s, none at 1.7 mm/s. Three times in a row, 20 ms apart,
 // that is rest.
 bool ty_pile_is_calm(const ty_pile* pile);
+void ty_pile_speeds(const ty_pile* pile, float* rms, float* largest); // of the balls, m/s
 
 typedef enum ty_pile_end
 {
