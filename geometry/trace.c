@@ -349,7 +349,8 @@ ty_bounds ty_world_bounds(const ty_world* world)
 
 static uint64_t object_memory(const ty_trace_object* object)
 {
-    uint64_t drift = object->drifts ? object->count * sizeof(bool) + object->drift_count * sizeof(uint32_t) : 0;
+    uint64_t drift =
+        object->drifts ? object->count * sizeof(bool) + object->drift_count * (sizeof(uint32_t) + sizeof(float)) : 0;
     return sizeof *object + (uint64_t)object->step_count * sizeof(ty_affine) + ty_trace_wide_memory(object->wide) +
            drift;
 }

@@ -64,6 +64,38 @@ static int steps_for(const ty_trace_object* object, float turn, float most, int 
     return outer * split + 1;
 }
 
+// Bounds how much longer a map makes a vector, by Gershgorin's bound of m^T m; exact for a similarity.
+static float stretch_of(const ty_affine* m)
+{
+    float xy = fabsf(ty_dot(m->x, m->y)), yz = fabsf(ty_dot(m->y, m->z)), zx = fabsf(ty_dot(m->z, m->x));
+    return sqrtf(
+        ty_max(ty_length_sqr(m->x) + xy + zx, ty_max(ty_length_sqr(m->y) + xy + yz, ty_length_sqr(m->z) + yz + zx)));
+}
+
+static float radius_of(const ty_mesh* mesh)
+{
+    float most = 0.0f;
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        most = ty_max(most, ty_length_sqr(mesh->positions[i]));
+    return sqrtf(most);
+}
+
+// Balls about the origins that hold the instances however they are turned, a little larger than exact.
+static void find_reaches(ty_trace_object* object)
+{
+    const ty_aggregate* a = object->aggregate;
+    float* radii = TY_ALLOC(float, a->prototype_count);
+    for (int i = 0; i < a->prototype_count; i++)
+        radii[i] = radius_of(a->prototypes[i]);
+    for (uint32_t i = 0; i < object->drift_count; i++)
+    {
+        uint32_t instance = object->drifting[i];
+        object->reaches[i] = 1.0001f * radii[a->prototype_index[instance]] * stretch_of(&object->steps[0]) *
+                             stretch_of(&a->transforms[instance]);
+    }
+    ty_free(radii);
+}
+
 static void list_drifting(ty_trace_object* object)
 {
     float turn = 0.0f;
@@ -97,11 +129,13 @@ ty_status ty_trace_find_drift(ty_trace_object* object, ty_motion motion, ty_erro
     object->drift_count = together ? object->count : count;
     object->drifts = TY_TRY_ALLOC(bool, object->count);
     object->drifting = TY_TRY_ALLOC(uint32_t, object->drift_count);
-    if (!object->drifts || !object->drifting)
+    object->reaches = TY_TRY_ALLOC(float, object->drift_count);
+    if (!object->drifts || !object->drifting || !object->reaches)
         return ty_error_set(error, TY_NO_MEMORY, "no memory for %u moving instances", object->drift_count);
     for (uint32_t i = 0; i < object->count; i++)
         object->drifts[i] = together || path_of(object, i, motion) > LEAST_PATH;
     list_drifting(object);
+    find_reaches(object);
     return TY_OK;
 }
 
@@ -186,6 +220,26 @@ static void write_bounds(const struct RTCBoundsFunctionArguments* args)
 
 // --- rays ---
 
+// Whether the ray passes the instance's ball, before any map is made: most that meet its box do not meet it. Of objects
+// at rest.
+static inline bool passes_by(const ty_trace_object* object, uint32_t number, const struct RTCRay* r)
+{
+    if (object->step_count > 1)
+        return false;
+    const ty_aggregate* a = object->aggregate;
+    uint32_t instance = object->drifting[number];
+    float seconds = ty_lerp(object->open, object->close, r->time), reach = object->reaches[number];
+    ty_vec3 center = ty_mad(a->transforms[instance].t, velocity_of(a, instance), seconds);
+    center = ty_map_point(&object->steps[0], center);
+    ty_vec3 o = ty_sub(ty_vec3_make(r->org_x, r->org_y, r->org_z), center), d = {r->dir_x, r->dir_y, r->dir_z};
+    float along = -ty_dot(o, d), far = ty_length_sqr(o), slack = 4e-6f * far;
+    float rest = ty_sqr(reach) + slack - (far - ty_sqr(along));
+    if (rest < 0.0f)
+        return true;
+    float half = sqrtf(rest);
+    return along + half < r->tnear || along - half > r->tfar;
+}
+
 // The ray in the prototype's space; the direction keeps its length in world space, so t means the same in both.
 static bool enter(const ty_trace_object* object, uint32_t instance, const ty_ray* ray, const struct RTCRay* outer,
                   struct RTCRay* local)
@@ -222,7 +276,8 @@ static void intersect_drifting(const struct RTCIntersectFunctionNArguments* args
     const ty_ray* ray = ((const ty_trace_context*)args->context)->ray;
     uint32_t instance = object->drifting[args->primID];
     struct RTCRayHit *ray_hit = (struct RTCRayHit*)args->rayhit, local;
-    if (!args->valid[0] || !enter(object, instance, ray, &ray_hit->ray, &local.ray))
+    if (!args->valid[0] || passes_by(object, args->primID, &ray_hit->ray) ||
+        !enter(object, instance, ray, &ray_hit->ray, &local.ray))
         return;
     local.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     local.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -243,7 +298,7 @@ static void occlude_drifting(const struct RTCOccludedFunctionNArguments* args)
     const ty_ray* ray = ((const ty_trace_context*)args->context)->ray;
     uint32_t instance = object->drifting[args->primID];
     struct RTCRay *outer = (struct RTCRay*)args->ray, local;
-    if (!args->valid[0] || !enter(object, instance, ray, outer, &local))
+    if (!args->valid[0] || passes_by(object, args->primID, outer) || !enter(object, instance, ray, outer, &local))
         return;
     ty_trace_context below = context_below(object, instance, ray);
     ty_embree_occluded(object->world->prototypes[ty_trace_prototype_of(object, instance)].scene, &below.embree,

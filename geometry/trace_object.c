@@ -9,6 +9,7 @@ static void free_object(ty_trace_object* object)
     ty_trace_wide_destroy(object->wide);
     ty_free(object->drifts);
     ty_free(object->drifting);
+    ty_free(object->reaches);
     ty_free(object->prototypes);
     ty_free(object->steps);
 }

@@ -33,6 +33,7 @@ typedef struct ty_trace_object
     float open, close;             // as ty_motion's
     bool* drifts;                  // [count] the instance moves by itself; owned; NULL = none does
     uint32_t* drifting;            // [drift_count] those that do; owned
+    float* reaches;                // [drift_count] radius about their origins, world; owned
     uint32_t drift_count;
     int drift_steps;    // between which their boxes move linearly
     uint64_t one_sided; // slots, as in ty_object_flags
