@@ -118,6 +118,14 @@ static ty_status info_aggregate(const char* path, bool recipe, json_t** out, ty_
     {
         json_array_append_new(attributes, ty_json_from_text(aggregate->attributes[i].name));
     }
+    if (aggregate->velocities)
+    {
+        json_array_append_new(attributes, json_string("velocity"));
+    }
+    if (aggregate->spins)
+    {
+        json_array_append_new(attributes, json_string("spin"));
+    }
     ty_error none;
     ty_bytes state;
     if (ty_aggregate_read_state(path, &state, &none) != TY_OK)

@@ -228,7 +228,9 @@ static ty_status bodies_check(const restorer* r)
         good = good && is_near(b.body.position) && is_near(b.seen) && is_unit(b.body.rotation);
         good = good && is_unit(b.seen_rotation) && is_near(b.body.velocity) && ty_length_sqr(b.body.spin) < 1e16f;
         good = good && ty_length_sqr(b.roll) < 1e24f;
-        good = good && b.reach >= 0.0f && b.reach < 1.0f && b.asleep <= 1 && b.slept <= 1;
+        // As pile_detect bounds it: candidates grow with its cube.
+        float farthest = good ? r->pile->margin + r->pile->def.grains[b.body.grain].radius : 0.0f;
+        good = good && b.reach >= 0.0f && b.reach <= 1.001f * farthest && b.asleep <= 1 && b.slept <= 1;
         if (!good)
             return damaged(r, "body", i);
     }

@@ -41,6 +41,7 @@ expect 0 "$tsuya" info film.03.glb
 prints 'instances: 14'
 prints 'elements: 14'
 prints 'at rest: false'
+prints '"velocity", "spin"'
 grep -Eq '^  overlap, greatest: [0-9.e-]+ % of the width$' out.txt || fail "no overlap with its unit"
 grep -Eq '^  speed, root mean square: [0-9.e-]+ mm/s$' out.txt || fail "no speed with its unit"
 grep -q '_' out.txt && fail "a metric without words"

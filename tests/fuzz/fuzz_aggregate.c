@@ -19,6 +19,10 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
     ty_error error;
     ty_status status = ty_aggregate_check("fuzz.glb", file, total, &error);
     TY_ASSERT(status == TY_OK || status == TY_BAD_FILE);
+    ty_bytes state;
+    status = ty_aggregate_find_state("fuzz.glb", file, total, &state, &error);
+    TY_ASSERT(status == TY_OK ? state.size <= bin_size : status == TY_BAD_FILE);
+    ty_bytes_term(&state);
     ty_free(file);
     return 0;
 }
