@@ -109,23 +109,32 @@ static void touches_find(const ty_pile* pile, found* f, int a, int b, float marg
     }
 }
 
-// Whether the spheres about two bodies come within the mean of both reaches.
-static bool spheres_meet(const void* owner, int i, int j)
-{
-    const ty_pile* pile = owner;
-    const ty_body *a = &pile->bodies[i], *b = &pile->bodies[j];
-    float reach = pile->def.grains[a->grain].radius * a->scale * pile_bent_reach(pile, i);
-    reach += pile->def.grains[b->grain].radius * b->scale * pile_bent_reach(pile, j);
-    reach = reach * pile->growth + 0.5f * (pile->poses[i].reach + pile->poses[j].reach);
-    return ty_length_sqr(ty_sub(a->position, b->position)) <= reach * reach;
-}
-
 typedef struct search
 {
     ty_pile* pile;
     body_grid grid;
+    ty_ball* spheres; // about the bodies, by half their reach wider
     found* pieces;
 } search;
+
+static bool spheres_meet(const void* owner, int i, int j)
+{
+    const search* s = owner;
+    float reach = s->spheres[i].radius + s->spheres[j].radius;
+    return ty_length_sqr(ty_sub(s->spheres[i].center, s->spheres[j].center)) <= reach * reach;
+}
+
+static ty_ball* spheres_make(const ty_pile* pile)
+{
+    ty_ball* out = TY_ALLOC(ty_ball, pile->count);
+    for (int i = 0; i < pile->count; i++)
+    {
+        const ty_body* b = &pile->bodies[i];
+        float radius = pile->def.grains[b->grain].radius * b->scale * pile_bent_reach(pile, i) * pile->growth;
+        out[i] = (ty_ball){b->position, radius + 0.5f * pile->poses[i].reach};
+    }
+    return out;
+}
 
 static void pairs_find(void* context, int64_t begin, int64_t end, int worker)
 {
@@ -138,7 +147,7 @@ static void pairs_find(void* context, int64_t begin, int64_t end, int worker)
     body_list near = {0};
     for (int i = (int)begin; i < (int)end; i++)
     {
-        body_grid_after(&s->grid, i, spheres_meet, pile, &near);
+        body_grid_after(&s->grid, i, spheres_meet, s, &near);
         for (int n = 0; n < near.count; n++)
         {
             int j = near.at[n], first = f->touch_count;
@@ -234,7 +243,7 @@ static void candidates_find(ty_pile* pile, ty_workers* workers)
     float widest = 0.0f;
     for (int i = 0; i < pile->count; i++)
         widest = ty_max(widest, pile->poses[i].reach);
-    search s = {.pile = pile};
+    search s = {.pile = pile, .spheres = spheres_make(pile)};
     s.grid = body_grid_create(pile->bodies, offsetof(ty_body, position), sizeof(ty_body), pile->count,
                               2.0f * pile->max_radius * pile->growth + widest);
     s.pieces = TY_ALLOC(found, (pile->count + SEARCH_PIECE - 1) / SEARCH_PIECE);
@@ -242,6 +251,7 @@ static void candidates_find(ty_pile* pile, ty_workers* workers)
     pile->wall_first = pile->pair_count;
     search_run(&s, workers, walls_find);
     ty_free(s.pieces);
+    ty_free(s.spheres);
     body_grid_destroy(&s.grid);
 }
 

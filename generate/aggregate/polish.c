@@ -25,23 +25,25 @@ static float weight(const motion* m, ty_vec3 arm, ty_vec3 n)
     return m->inverse_mass + ty_dot(u, symmetric_times(m->inverse_inertia, u));
 }
 
-static void touch_project_wall(ty_pile* pile, const pair* p, const touch* t, float radius)
+// Whether the touch of the ball at from had to be corrected.
+static bool touch_project_wall(ty_pile* pile, const pair* p, const touch* t, ty_vec3 from, float radius)
 {
-    ty_vec3 n, center = ball_center(pile, p->a, t->a);
-    float gap = pile_wall(pile, t->b, center, &n) - radius;
+    ty_vec3 n;
+    float gap = pile_wall(pile, t->b, from, &n) - radius;
     if (gap >= 0.0f)
-        return;
-    ty_vec3 arm = ty_sub(ty_mad(center, n, -radius), pile->bodies[p->a].position);
+        return false;
+    ty_vec3 arm = ty_sub(ty_mad(from, n, -radius), pile->bodies[p->a].position);
     body_push(pile, p->a, arm, ty_mul(n, -OVER_RELAXATION * gap / weight(&pile->motions[p->a], arm, n)));
+    return true;
 }
 
-static void touch_project(ty_pile* pile, const pair* p, const touch* t, float radius)
+static bool touch_project(ty_pile* pile, const pair* p, const touch* t, ty_vec3 from, float radius)
 {
     float other = pile_balls(pile, p->b)[t->b].radius;
-    ty_vec3 from = ball_center(pile, p->a, t->a), to = ball_center(pile, p->b, t->b), d = ty_sub(from, to);
+    ty_vec3 to = ball_center(pile, p->b, t->b), d = ty_sub(from, to);
     float square = ty_length_sqr(d);
     if (square >= ty_sqr(radius + other))
-        return;
+        return false;
     float length = sqrtf(square);
     ty_vec3 n = length > 1e-9f ? ty_mul(d, 1.0f / length) : ty_vec3_make(0.0f, 1.0f, 0.0f);
     ty_vec3 arm_a = ty_sub(ty_mad(from, n, -radius), pile->bodies[p->a].position);
@@ -50,18 +52,20 @@ static void touch_project(ty_pile* pile, const pair* p, const touch* t, float ra
     ty_vec3 impulse = ty_mul(n, OVER_RELAXATION * (radius + other - length) / sum);
     body_push(pile, p->a, arm_a, impulse);
     body_push(pile, p->b, arm_b, ty_neg(impulse));
+    return true;
 }
 
 static void pair_project(ty_pile* pile, pair* p)
 {
-    for (int i = p->first; i < p->first + p->count; i++)
+    ty_vec3 from = {0.0f, 0.0f, 0.0f};
+    for (int i = p->first, last = -1; i < p->first + p->count; i++)
     {
         const touch* t = &pile->touches[i];
+        if (t->a != last) // several touches of a ball follow each other
+            from = ball_center(pile, p->a, t->a);
         float radius = pile_balls(pile, p->a)[t->a].radius;
-        if (p->b >= 0)
-            touch_project(pile, p, t, radius);
-        else
-            touch_project_wall(pile, p, t, radius);
+        bool moved = p->b >= 0 ? touch_project(pile, p, t, from, radius) : touch_project_wall(pile, p, t, from, radius);
+        last = moved ? -1 : t->a;
     }
 }
 
