@@ -295,7 +295,8 @@ static void report_fill(const facet_scene* f, ty_facet_report* report)
 static void facets_make(facet_scene* f, ty_workers* workers)
 {
     for (uint32_t i = 0; i < f->count; i++)
-        qsort(f->bodies[i].hits, (size_t)f->bodies[i].hit_count, sizeof(facet_hit), hit_order);
+        if (f->bodies[i].hit_count > 0)
+            qsort(f->bodies[i].hits, (size_t)f->bodies[i].hit_count, sizeof(facet_hit), hit_order);
     ty_parallel_all(workers, f->count, 16, bodies_project, f);
     for (int round = 0; round < SURFACE_ROUNDS; round++)
     {
