@@ -186,6 +186,36 @@ static ty_status film_run(film* f, const ty_aggregate_sink* sink, ty_error* erro
     return status;
 }
 
+// The layers below have come to rest; the film shows how the last one falls.
+static ty_status film_layers(film* f, ty_error* error)
+{
+    kit* k = f->k;
+    ty_status status = TY_OK;
+    for (int layer = 1; layer <= k->recipe->layers.count && status == TY_OK; layer++)
+    {
+        status = kit_rest(k, error);
+        f->settled = ty_pile_count(k->pile);
+        if (status == TY_OK)
+            status = kit_layer(k, layer, error);
+    }
+    return status;
+}
+
+// Those of eggs that have lain for long are up.
+static void yolks_init(film* f)
+{
+    const ty_body* bodies = ty_pile_bodies(f->k->pile);
+    for (int i = 0; i < f->settled; i++)
+    {
+        if (!mixture_is_roe(&f->k->mix, bodies[i].grain))
+            continue;
+        const ty_element_def* def = &f->k->mix.kinds[f->k->mix.kind_of[bodies[i].grain]].def;
+        for (int k = 0; k < 2000; k++)
+            ty_roe_float(def, f->k->recipe->seed, &bodies[i], (uint32_t)i, (ty_vec3){0, 0, 0}, 9.81f, 0.005f,
+                         &f->yolks[i]);
+    }
+}
+
 // What is pressed lies already, but in a mould, where the press packs it; a mould that does not press is off at once.
 static ty_status film_begin(film* f, ty_error* error)
 {
@@ -194,6 +224,8 @@ static ty_status film_begin(film* f, ty_error* error)
     ty_status status = kit_pile(k, error);
     if (status == TY_OK)
         status = kit_fill(k, error);
+    if (status == TY_OK)
+        status = film_layers(f, error);
     if (status == TY_OK && k->cooking)
         status = kit_rest(k, error);
     if (status == TY_OK && kit_stands(k) && !(recipe_is_mould(k->recipe) && press->strain > 0.0f))
@@ -208,6 +240,7 @@ static ty_status film_begin(film* f, ty_error* error)
     f->frames = TY_ALLOC(ty_affine, f->count);
     f->yolks = TY_ALLOC(ty_yolk, f->count); // in the middle
     f->before = TY_ALLOC(ty_vec3, f->count);
+    yolks_init(f);
     if (k->pour.bodies)
         f->poured = ty_aggregate_add_attribute(f->first, "poured");
     if (k->cooking)
@@ -226,6 +259,10 @@ static ty_status film_check(const ty_aggregate_recipe* r, ty_error* error)
                             "animate.frames: a film shows how rigid grains settle: take solver impulse");
     if (r->fill.start == TY_FILL_POUR && r->press.strain > 0.0f)
         return ty_error_set(error, TY_BAD_INPUT, "animate.frames: a film shows pouring or pressing, not both");
+    if (r->layers.count > 0 && (r->fill.start == TY_FILL_POUR || r->press.strain > 0.0f || recipe_is_mould(r)))
+        return ty_error_set(error, TY_BAD_INPUT,
+                            "animate.frames: a film shows how the last of the layers falls, and no pouring or "
+                            "pressing");
     if (cooking_is(&r->animate) && (r->fill.start == TY_FILL_POUR || r->press.strain > 0.0f || recipe_is_mould(r)))
         return ty_error_set(error, TY_BAD_INPUT,
                             "animate: a film shows cooking (soak, cook, stand) or pouring or pressing, not both");

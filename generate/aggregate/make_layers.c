@@ -15,8 +15,6 @@ ty_status layers_check(const ty_aggregate_recipe* r, ty_error* error)
         return TY_OK;
     if (r->settle.solver == TY_SOLVER_XPBD)
         return ty_error_set(error, TY_BAD_INPUT, "layers: they settle as rigid elements; take solver impulse");
-    if (r->animate.frames > 0)
-        return ty_error_set(error, TY_BAD_INPUT, "layers: a film has the same elements in all frames; take frames 0");
     return TY_OK;
 }
 

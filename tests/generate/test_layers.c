@@ -204,12 +204,60 @@ static void impossible_layers_are_refused(void** state)
     assert_refused(&r, "layers[0].elements", "above 0");
 }
 
+enum
+{
+    FRAMES = 6,
+};
+
+typedef struct film
+{
+    ty_vec3 at[FRAMES][RICE + 3 * EGGS];
+    int shown;
+} film;
+
+static ty_status keep(void* context, int frame, ty_aggregate* a, ty_error* error)
+{
+    (void)error;
+    film* f = context;
+    assert_int_equal(frame, ++f->shown);
+    assert_int_equal(a->instance_count, RICE + 3 * EGGS);
+    for (uint32_t i = 0; i < a->instance_count; i++)
+        f->at[frame - 1][i] = a->transforms[i].t;
+    return TY_OK;
+}
+
+// The rice lies and stays, the eggs come down onto it; both are in every frame.
+static void films_show_the_last_layer(void** state)
+{
+    (void)state;
+    static film f;
+    ty_layer_def layer = eggs();
+    ty_aggregate_recipe r = small_bowl(&layer, 1);
+    r.animate.frames = FRAMES;
+    r.animate.fps = 20.0f;
+    ty_error error;
+    ty_aggregate_sink sink = {keep, &f};
+    if (ty_aggregate_film(&r, NULL, &sink, &error) != TY_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(f.shown, FRAMES);
+    double rice = 0.0, fallen = 0.0;
+    for (int i = 0; i < RICE; i++)
+        rice += (double)ty_length(ty_sub(f.at[FRAMES - 1][i], f.at[0][i])) / RICE;
+    for (int i = RICE; i < RICE + EGGS; i++)
+        fallen += (double)(f.at[0][i].y - f.at[FRAMES - 1][i].y) / EGGS;
+    assert_true(rice < 1e-3 && fallen > 2e-3);
+    r.fill.start = TY_FILL_POUR;
+    assert_int_equal(ty_aggregate_film(&r, NULL, &sink, &error), TY_BAD_INPUT);
+    assert_non_null(strstr(error.text, "layers"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(eggs_lie_on_rice),         cmocka_unit_test(what_lies_below_stays),
-        cmocka_unit_test(what_is_lost_comes_again), cmocka_unit_test(threads_change_nothing),
-        cmocka_unit_test(a_level_gives_the_count),  cmocka_unit_test(impossible_layers_are_refused),
+        cmocka_unit_test(eggs_lie_on_rice),          cmocka_unit_test(what_lies_below_stays),
+        cmocka_unit_test(what_is_lost_comes_again),  cmocka_unit_test(threads_change_nothing),
+        cmocka_unit_test(a_level_gives_the_count),   cmocka_unit_test(impossible_layers_are_refused),
+        cmocka_unit_test(films_show_the_last_layer),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
