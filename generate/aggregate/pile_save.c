@@ -224,10 +224,11 @@ static ty_status bodies_check(const restorer* r)
     {
         saved_body b;
         take(r->bodies, i, &b, sizeof b);
-        bool good = b.body.grain < (uint32_t)r->pile->def.grain_count && b.body.scale > 0.0f && b.body.scale <= 100.0f;
+        bool good = b.body.grain < (uint32_t)r->pile->def.grain_count && b.body.scale > 0.01f && b.body.scale <= 100.0f;
         good = good && is_near(b.body.position) && is_near(b.seen) && is_unit(b.body.rotation);
-        good = good && is_unit(b.seen_rotation) && is_near(b.body.velocity) && ty_length_sqr(b.body.spin) < 1e16f;
-        good = good && ty_length_sqr(b.roll) < 1e24f;
+        good = good && is_unit(b.seen_rotation) && ty_length_sqr(b.body.velocity) < 1e6f &&
+               ty_length_sqr(b.body.spin) < 1e10f;
+        good = good && ty_length_sqr(b.roll) < 1.0f;
         // As pile_detect bounds it: candidates grow with its cube.
         float farthest = good ? r->pile->margin + r->pile->def.grains[b.body.grain].radius : 0.0f;
         good = good && b.reach >= 0.0f && b.reach <= 1.001f * farthest && b.asleep <= 1 && b.slept <= 1;
@@ -280,7 +281,7 @@ static ty_status pairs_check(const restorer* r)
             saved_touch t;
             take(r->touches, at, &t, sizeof t);
             int order = t.a * 256 + t.b;
-            bool sane = fabsf(t.normal_impulse) < 1e12f && ty_length_sqr(t.tangent_impulse) < 1e24f;
+            bool sane = fabsf(t.normal_impulse) < 1e4f && ty_length_sqr(t.tangent_impulse) < 1e8f;
             if (!sane || t.a >= of_a || t.b >= of_b || order <= before)
                 return damaged(r, "contact", at);
             before = order;
