@@ -54,6 +54,8 @@ static ty_status inflate(kit* k, const ty_vec3* points, int count, ty_error* err
     if (k->start.overlap_mean <= TY_PILE_PACKED)
         return TY_OK;
     float size = ty_pile_fit(k->pile, &k->top, fill->sweeps / 4, k->workers);
+    if (ty_cancel_requested()) // before they were pushed apart
+        return ty_error_set(error, TY_INTERRUPTED, "interrupted while filling");
     return ty_error_set(error, TY_BAD_INPUT, "fill.density: %g; these elements pack to %.2f at most in this container",
                         (double)fill->density, (double)(fill->density * size * size * size));
 }
