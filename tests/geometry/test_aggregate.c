@@ -6,37 +6,13 @@
 
 #include <cmocka.h>
 
+#include "base/own_folder.h"
 #include "trace_meshes.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <tsuya/base/file.h>
 #include <unistd.h>
-
-static char folder[64];
-
-static const char* in_folder(const char* name)
-{
-    static char path[128];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
-static int make_folder(void** state)
-{
-    (void)state;
-    strcpy(folder, "/tmp/tsuya_aggregate_XXXXXX");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void** state)
-{
-    (void)state;
-    static const char* const names[] = {"a.glb", "b.glb", "points.ply"};
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-        unlink(in_folder(names[i]));
-    return rmdir(folder);
-}
 
 // Three prototypes (one without instances), interleaved, mirrored and stretched.
 static ty_aggregate* make_heap(uint32_t count)
@@ -654,5 +630,5 @@ int main(void)
         cmocka_unit_test(damaged_points),
         cmocka_unit_test(memory_runs_out),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, folder_setup, folder_teardown);
 }

@@ -6,6 +6,7 @@
 
 #include <cmocka.h>
 
+#include "base/own_folder.h"
 #include "trace_meshes.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,32 +16,7 @@
 #include <tsuya/geometry/mesh_file.h>
 #include <unistd.h>
 
-static char folder[64];
 static const char* const names[] = {"a.glb", "b.glb", "a.usda", "b.usda", "a.ply", "b.ply", "a.obj", "b.obj"};
-
-static const char* in_folder(const char* name)
-{
-    static char paths[4][128];
-    static int next;
-    char* path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
-}
-
-static int make_folder(void** state)
-{
-    (void)state;
-    strcpy(folder, "/tmp/tsuya_export_XXXXXX");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void** state)
-{
-    (void)state;
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-        unlink(in_folder(names[i]));
-    return rmdir(folder);
-}
 
 // Spheres and tori with a material each, some of them mirrored and stretched.
 static ty_aggregate* make_heap(bool rigid)
@@ -228,5 +204,5 @@ int main(void)
         cmocka_unit_test(realised),   cmocka_unit_test(mesh_files), cmocka_unit_test(points),
         cmocka_unit_test(same_bytes), cmocka_unit_test(refused),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, folder_setup, folder_teardown);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Velocities and spins of instances: through each file, under the nodes of other programs, on a realised mesh.
+#include "base/own_folder.h"
 #include "trace_meshes.h"
 #include <base/cmocka_all.h>
 #include <stdio.h>
@@ -14,32 +15,7 @@ enum
     COUNT = 30
 };
 
-static char folder[64];
 static const char* const names[] = {"a.glb", "a.ply", "a.usda"};
-
-static const char* in_folder(const char* name)
-{
-    static char paths[4][128];
-    static int next;
-    char* path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
-}
-
-static int make_folder(void** state)
-{
-    (void)state;
-    strcpy(folder, "/tmp/tsuya_motion_XXXXXX");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void** state)
-{
-    (void)state;
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-        unlink(in_folder(names[i]));
-    return rmdir(folder);
-}
 
 // Two kinds in turn, so that a file holds them in another order.
 static ty_aggregate* make_heap(bool velocities, bool spins)
@@ -222,5 +198,5 @@ int main(void)
         cmocka_unit_test(round_trip), cmocka_unit_test(usd),     cmocka_unit_test(under_nodes),
         cmocka_unit_test(realised),   cmocka_unit_test(refused),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, folder_setup, folder_teardown);
 }
