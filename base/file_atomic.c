@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Outputs that are complete or absent: a temporary beside the target, fsync, rename, fsync of the folder.
+#include "file_pending.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -13,48 +14,10 @@
 
 enum
 {
-    slot_count = 64,
     temporary_attempts = 1000
 };
 
-// A pending temporary, for the exit path of a signal. A forked child inherits the table but owns none of it.
-typedef enum slot_state
-{
-    SLOT_FREE,
-    SLOT_TAKEN, // path is being written
-    SLOT_PENDING
-} slot_state;
-
-typedef struct pending_slot
-{
-    atomic_int state;
-    pid_t owner;
-    char path[TY_PATH_MAX];
-} pending_slot;
-
-static pending_slot slots[slot_count];
 static atomic_uint temporary_counter;
-
-static int slot_take(void)
-{
-    for (int i = 0; i < slot_count; i++)
-    {
-        int state = SLOT_FREE;
-        if (atomic_compare_exchange_strong(&slots[i].state, &state, SLOT_TAKEN))
-            return i;
-    }
-    return -1;
-}
-
-void ty_atomic_abort_all(void)
-{
-    int saved = errno;
-    pid_t self = getpid();
-    for (int i = 0; i < slot_count; i++)
-        if (atomic_load(&slots[i].state) == SLOT_PENDING && slots[i].owner == self)
-            unlink(slots[i].path);
-    errno = saved;
-}
 
 static ty_status fail_errno(ty_error* error, const char* path, const char* what)
 {
@@ -107,24 +70,25 @@ static bool temporary_name(ty_atomic_file* file)
     return file->temporary[0] != 0;
 }
 
-// Creates the temporary under a name that nobody has. The slot is pending first: a signal in between finds it.
+// Creates the temporary under a name that nobody has.
 static ty_status temporary_create(ty_atomic_file* file, ty_error* error)
 {
-    pending_slot* slot = &slots[file->slot];
     for (int i = 0; i < temporary_attempts; i++)
     {
         if (!temporary_name(file))
             return ty_error_set_at(error, TY_BAD_FILE, file->path, 0, 0, "cannot write: the path is too long");
-        atomic_store(&slot->state, SLOT_TAKEN);
-        memcpy(slot->path, file->temporary, sizeof(slot->path));
-        slot->owner = getpid();
-        atomic_store(&slot->state, SLOT_PENDING);
+        file->slot = pending_add(file->temporary);
+        if (file->slot < 0)
+            return ty_error_set_at(error, TY_BAD_FILE, file->path, 0, 0,
+                                   "cannot write: too many outputs are open already");
         int fd = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (fd >= 0)
         {
             close(fd);
             return TY_OK;
         }
+        pending_drop(file->slot);
+        file->slot = -1;
         if (errno != EEXIST)
             break;
     }
@@ -136,18 +100,7 @@ ty_status ty_atomic_begin(ty_atomic_file* file, const char* path, ty_error* erro
     memset(file, 0, sizeof(*file));
     file->slot = -1;
     ty_status status = target_resolve(file, path, error);
-    if (status)
-        return status;
-    file->slot = slot_take();
-    if (file->slot < 0)
-        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "cannot write: %d outputs are open already", slot_count);
-    status = temporary_create(file, error);
-    if (status)
-    {
-        atomic_store(&slots[file->slot].state, SLOT_FREE);
-        file->slot = -1;
-    }
-    return status;
+    return status ? status : temporary_create(file, error);
 }
 
 // What the system has only promised so far (a full disk, a quota) comes out here.
@@ -172,7 +125,7 @@ ty_status ty_atomic_commit(ty_atomic_file* file, ty_error* error)
         ty_atomic_abort(file);
         return status;
     }
-    atomic_store(&slots[file->slot].state, SLOT_FREE);
+    pending_drop(file->slot);
     file->slot = -1;
     char folder[TY_PATH_MAX];
     ty_path_folder(file->path, folder);
@@ -188,7 +141,7 @@ void ty_atomic_abort(ty_atomic_file* file)
     if (file->slot < 0)
         return;
     unlink(file->temporary);
-    atomic_store(&slots[file->slot].state, SLOT_FREE);
+    pending_drop(file->slot);
     file->slot = -1;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Folders that become visible only when all their files are there.
+#include "file_pending.h"
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -15,17 +16,32 @@ enum
     ATTEMPTS = 100
 };
 
+// Unlinks what a folder lists, and tells whether anything went. Calls to the system alone: a signal's exit path uses
+// it.
+static bool files_unlink(int fd)
+{
+    _Alignas(struct dirent64) char list[4096];
+    bool gone = false;
+    for (ssize_t size; (size = getdents64(fd, list, sizeof list)) > 0;)
+        for (ssize_t at = 0; at < size;)
+        {
+            const struct dirent64* entry = (const void*)(list + at);
+            gone |= unlinkat(fd, entry->d_name, 0) == 0; // fails for folders, "." and ".." among them
+            at += entry->d_reclen;
+        }
+    return gone;
+}
+
 void ty_folder_remove(const char* path)
 {
     int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    DIR* folder = fd < 0 ? NULL : fdopendir(fd);
-    if (!folder && fd >= 0)
-        close(fd);
-    if (!folder)
+    if (fd < 0)
         return;
-    for (struct dirent* entry = readdir(folder); entry; entry = readdir(folder))
-        (void)unlinkat(dirfd(folder), entry->d_name, 0); // fails for folders, "." and ".." among them
-    closedir(folder);
+    // From the start again while anything goes: a list that shrinks as it is read may leave names out, and another
+    // thread may still write.
+    while (files_unlink(fd) && lseek(fd, 0, SEEK_SET) == 0)
+        continue;
+    close(fd);
     (void)rmdir(path);
 }
 
@@ -43,8 +59,12 @@ static bool temporary_create(ty_atomic_folder* folder, const char* parent, const
         snprintf(name, sizeof(name), ".%.100s.tmp-%ld-%d", target, (long)getpid(), i);
         ty_path_join(parent, name, folder->temporary);
         errno = ENAMETOOLONG;
-        if (folder->temporary[0] && mkdir(folder->temporary, 0777) == 0)
+        if (!folder->temporary[0])
+            return false;
+        folder->slot = pending_add(folder->temporary); // beyond what the table holds, only a signal leaves it
+        if (mkdir(folder->temporary, 0777) == 0)
             return true;
+        pending_drop(folder->slot);
         if (errno != EEXIST)
             return false;
     }
@@ -85,7 +105,9 @@ ty_status ty_atomic_folder_commit(ty_atomic_folder* folder, ty_error* error)
 
 void ty_atomic_folder_abort(ty_atomic_folder* folder)
 {
-    if (folder->temporary[0])
-        ty_folder_remove(folder->temporary);
+    if (!folder->temporary[0])
+        return;
+    ty_folder_remove(folder->temporary);
+    pending_drop(folder->slot);
     folder->temporary[0] = 0;
 }

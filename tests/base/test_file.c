@@ -176,13 +176,29 @@ static void test_abort_leaves_the_old(void** state)
     assert_int_equal(entries_of(folder), 1);
 }
 
+static void put_in(const char* parent, const char* name, const char* text)
+{
+    char full[TY_PATH_MAX];
+    ty_error error;
+    ty_path_join(parent, name, full);
+    assert_int_equal(ty_file_write(full, text, strlen(text), &error), TY_OK);
+}
+
 static void test_abort_all(void** state)
 {
     (void)state;
     ty_atomic_file files[3];
     for (int i = 0; i < 3; i++)
         assert_int_equal(ty_atomic_begin(&files[i], at("x.png"), NULL), TY_OK);
-    assert_int_equal(entries_of(folder), 3);
+    ty_atomic_folder frames;
+    assert_int_equal(ty_atomic_folder_begin(&frames, at("frames"), NULL), TY_OK);
+    for (int i = 0; i < 300; i++) // more than a list of them takes at once
+    {
+        char name[100];
+        snprintf(name, sizeof name, "%080d", i);
+        put_in(frames.temporary, name, "one");
+    }
+    assert_int_equal(entries_of(folder), 4);
     ty_atomic_abort_all();
     assert_int_equal(entries_of(folder), 0);
     ty_error error;
@@ -190,6 +206,7 @@ static void test_abort_all(void** state)
     assert_false(ty_file_exists(at("x.png")));
     ty_atomic_abort(&files[1]);
     ty_atomic_abort(&files[2]);
+    ty_atomic_folder_abort(&frames);
 }
 
 static void abort_all_in_child(void* context)
@@ -407,14 +424,6 @@ static void test_sequences(void** state)
     memcpy(most, "#", 1);
     most[TY_PATH_MAX - 1] = 0;
     assert_frame(most, 100, ""); // does not fit: names nothing
-}
-
-static void put_in(const char* parent, const char* name, const char* text)
-{
-    char full[TY_PATH_MAX];
-    ty_error error;
-    ty_path_join(parent, name, full);
-    assert_int_equal(ty_file_write(full, text, strlen(text), &error), TY_OK);
 }
 
 static void test_folders_are_whole(void** state)

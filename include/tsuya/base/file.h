@@ -23,7 +23,7 @@ typedef struct ty_atomic_file
 {
     char path[TY_PATH_MAX];
     char temporary[TY_PATH_MAX]; // beside path, with the same extension, so that libraries see the right type
-    int slot;                    // in the table of pending files
+    int slot;                    // in the table of pending temporaries
 } ty_atomic_file;
 
 // Fails early when the folder is missing or not writable or path is a directory, a device or a pipe. A link is
@@ -39,6 +39,7 @@ typedef struct ty_atomic_folder
 {
     char path[TY_PATH_MAX];
     char temporary[TY_PATH_MAX]; // beside path; empty = nothing is pending
+    int slot;                    // in the table of pending temporaries
 } ty_atomic_folder;
 
 TY_CHECKED ty_status ty_atomic_folder_begin(ty_atomic_folder* folder, const char* path, ty_error* error);
