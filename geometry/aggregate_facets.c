@@ -67,7 +67,7 @@ static void plane_add(plane_sum* s, const facet_hit* hits, int count, const face
         if ((h->depth > 0.0f) != deep)
             continue;
         ty_vec3 x = f->before[body->first + h->vertex], out = ty_sub(x, h->surface);
-        float area = body->areas[h->vertex], weight = fabsf(h->depth) * area;
+        float area = (float)body->areas[h->vertex], weight = fabsf(h->depth) * area;
         s->normal = ty_mad(s->normal, out, deep ? sign * area : -sign * area);
         s->center = ty_mad(s->center, ty_mul(ty_add(x, h->surface), 0.5f), weight);
         s->weight += (double)weight;
@@ -84,7 +84,8 @@ static float plane_deviation(const facet_plane* p, const facet_hit* hits, int co
     {
         ty_vec3 middle = ty_mul(ty_add(f->before[body->first + hits[i].vertex], hits[i].surface), 0.5f);
         if (hits[i].depth > 0.0f)
-            sum += fabsf(ty_dot(ty_sub(middle, p->center), p->normal)) * hits[i].depth * body->areas[hits[i].vertex];
+            sum += fabsf(ty_dot(ty_sub(middle, p->center), p->normal)) * hits[i].depth *
+                   (float)body->areas[hits[i].vertex];
     }
     return sum;
 }

@@ -18,7 +18,7 @@ typedef struct facet_hit
 typedef struct facet_body
 {
     const ty_mesh* shape; // its prototype
-    const float* areas;   // of its vertices
+    const double* areas;  // of its vertices
     uint32_t prototype;   // in the world
     uint32_t first;       // of its vertices in the mesh
     ty_affine place, back;
@@ -45,7 +45,7 @@ typedef struct facet_scene
     ty_vec3* from;   // positions at the beginning of a round
     facet_body* bodies;
     uint32_t count;
-    float** areas;      // [prototypes][vertices], a third of the triangles about each, in the prototype's space
+    double** areas;     // [prototypes][vertices], a third of the triangles about each, in the prototype's space
     facet_order* order; // ascending
     float widest;       // of the boxes, along x
     bool lower_moves;

@@ -15,20 +15,6 @@ static ty_bounds box_of(const ty_vec3* positions, uint32_t count, float margin)
     return (ty_bounds){ty_sub(box.low, more), ty_add(box.high, more)};
 }
 
-static float* areas_of(const ty_mesh* mesh)
-{
-    float* areas = TY_ALLOC(float, mesh->vertex_count);
-    for (uint32_t t = 0; t < mesh->triangle_count; t++)
-    {
-        const uint32_t* v = mesh->triangles[t];
-        ty_vec3 a = mesh->positions[v[0]];
-        ty_vec3 n = ty_cross(ty_sub(mesh->positions[v[1]], a), ty_sub(mesh->positions[v[2]], a));
-        for (int k = 0; k < 3; k++)
-            areas[v[k]] += ty_length(n) / 6.0f;
-    }
-    return areas;
-}
-
 static ty_status world_make(facet_scene* f, uint32_t* prototypes, ty_error* error)
 {
     ty_world_def def = ty_world_def_default();
@@ -40,7 +26,7 @@ static ty_status world_make(facet_scene* f, uint32_t* prototypes, ty_error* erro
         if (!topology.closed)
             return ty_error_set(error, TY_BAD_INPUT, "prototype %d is not closed: contact facets need closed meshes",
                                 p);
-        f->areas[p] = areas_of(f->aggregate->prototypes[p]);
+        f->areas[p] = ty_mesh_vertex_areas(f->aggregate->prototypes[p]);
         status = ty_world_add_prototype(f->world, f->aggregate->prototypes[p], &prototypes[p], error);
     }
     return status == TY_OK ? ty_world_commit(f->world, error) : status;
@@ -201,7 +187,7 @@ ty_status facets_begin(facet_scene* f, ty_workers* workers, ty_error* error)
     if (status != TY_OK)
         return status;
     f->count = f->aggregate->instance_count;
-    f->areas = TY_ALLOC(float*, f->aggregate->prototype_count);
+    f->areas = TY_ALLOC(double*, f->aggregate->prototype_count);
     f->bodies = TY_TRY_ALLOC(facet_body, f->count);
     f->order = TY_TRY_ALLOC(facet_order, f->count);
     f->before = TY_TRY_ALLOC(ty_vec3, f->mesh->vertex_count);

@@ -201,3 +201,12 @@ float* ty_mesh_add_attribute(ty_mesh* mesh, const char* name, int components)
     attribute->values = ty_alloc(mesh->vertex_count, sizeof(float) * (size_t)components);
     return attribute->values;
 }
+
+void ty_mesh_set_quad(ty_mesh* mesh, uint32_t first, const uint32_t q[4])
+{
+    static const int cut[2][6] = {{0, 1, 3, 1, 2, 3}, {0, 1, 2, 0, 2, 3}};
+    const ty_vec3* p = mesh->positions;
+    bool across = ty_length_sqr(ty_sub(p[q[0]], p[q[2]])) <= ty_length_sqr(ty_sub(p[q[1]], p[q[3]]));
+    for (uint32_t e = 0; e < 6; e++)
+        mesh->triangles[first + e / 3][e % 3] = q[cut[across][e]];
+}

@@ -65,8 +65,7 @@ static cell locate(const source_set* set, ty_vec3 p, uint32_t vertex)
     return (cell){coarse_key(coarse), fine, vertex};
 }
 
-// A third of the area of the triangles about each vertex.
-static double* vertex_areas(const ty_mesh* mesh)
+double* ty_mesh_vertex_areas(const ty_mesh* mesh)
 {
     double* areas = TY_ALLOC(double, mesh->vertex_count);
     for (size_t t = 0; t < mesh->triangle_count; t++)
@@ -90,7 +89,7 @@ static void sources_init(source_set* set, const ty_mesh* mesh, float* const* fie
                         .fine_size = 3.0 * (double)width / fine_per_coarse,
                         .field_count = field_count};
     cell* cells = TY_ALLOC(cell, mesh->vertex_count);
-    double* areas = vertex_areas(mesh);
+    double* areas = ty_mesh_vertex_areas(mesh);
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
         cells[i] = locate(set, mesh->positions[i], i);
     qsort(cells, mesh->vertex_count, sizeof(*cells), compare_cells);

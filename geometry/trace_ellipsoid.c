@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A tight ellipsoid about a mesh: Khachiyan's algorithm on the mesh's extreme vertices.
 #include "trace_world.h"
+#include "triangle.h"
 
 #define DIRECTIONS 256
 #define MAX_POINTS (DIRECTIONS + 6)
@@ -159,7 +160,7 @@ void ty_trace_fit_inner(const ty_world* world, uint32_t prototype)
         ty_vec3 corner[3], zero = {0, 0, 0};
         for (int k = 0; k < 3; k++)
             corner[k] = ty_map_point(&p->to_sphere, p->mesh->positions[p->mesh->triangles[i][k]]);
-        ty_vec2 w = ty_trace_closest_on_triangle(zero, corner[0], corner[1], corner[2]);
+        ty_vec2 w = ty_triangle_closest(zero, corner[0], corner[1], corner[2]);
         ty_vec3 at = ty_mad(ty_mad(corner[0], ty_sub(corner[1], corner[0]), w.x), ty_sub(corner[2], corner[0]), w.y);
         nearest_sqr = ty_min(nearest_sqr, ty_length_sqr(at));
     }

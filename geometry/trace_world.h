@@ -135,10 +135,6 @@ bool ty_trace_sphere_map(const ty_world* world, const ty_trace_object* object, u
 // triangles; not done for large meshes.
 void ty_trace_find_horizons(ty_trace_prototype* prototype);
 
-// --- trace_closest.c ---
-// Barycentric weights of b and c.
-ty_vec2 ty_trace_closest_on_triangle(ty_vec3 p, ty_vec3 a, ty_vec3 b, ty_vec3 c);
-
 // --- trace_moving.c ---
 // A moving object as a user geometry of one primitive. NULL when Embree refuses.
 RTCGeometry ty_trace_create_moving_geometry(const ty_world* world, ty_trace_object* object);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The signed distance from a closed mesh: winding numbers along rows, nearest triangles by a distance transform.
+#include "triangle.h"
 #include "voxels.h"
 #include <string.h>
 
@@ -80,35 +81,17 @@ static void signs_apply(scan* s)
 
 // --- the distance ---
 
-// Ericson 2005, section 5.1.5.
-static ty_vec3 triangle_closest(ty_vec3 a, ty_vec3 b, ty_vec3 c, ty_vec3 p)
+static ty_vec3 triangle_closest(const scan* s, int32_t triangle, ty_vec3 p)
 {
-    ty_vec3 ab = ty_sub(b, a), ac = ty_sub(c, a), ap = ty_sub(p, a), bp = ty_sub(p, b), cp = ty_sub(p, c);
-    float d1 = ty_dot(ab, ap), d2 = ty_dot(ac, ap), d3 = ty_dot(ab, bp), d4 = ty_dot(ac, bp);
-    float d5 = ty_dot(ab, cp), d6 = ty_dot(ac, cp);
-    if (d1 <= 0.0f && d2 <= 0.0f)
-        return a;
-    if (d3 >= 0.0f && d4 <= d3)
-        return b;
-    if (d6 >= 0.0f && d5 <= d6)
-        return c;
-    float vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-    if (vc <= 0.0f && d1 >= 0.0f && d3 <= 0.0f)
-        return ty_mad(a, ab, d1 / (d1 - d3));
-    if (vb <= 0.0f && d2 >= 0.0f && d6 <= 0.0f)
-        return ty_mad(a, ac, d2 / (d2 - d6));
-    if (va <= 0.0f && d4 >= d3 && d5 >= d6)
-        return ty_mad(b, ty_sub(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    float below = 1.0f / (va + vb + vc);
-    return ty_mad(ty_mad(a, ab, vb * below), ac, vc * below);
+    const uint32_t* c = s->mesh->triangles[triangle];
+    const ty_vec3* at = s->mesh->positions;
+    return ty_triangle_at(at[c[0]], at[c[1]], at[c[2]], ty_triangle_closest(p, at[c[0]], at[c[1]], at[c[2]]));
 }
 
 // Takes the triangle where it is nearer than what the node has.
 static void node_try(scan* s, size_t node, ty_vec3 p, int32_t triangle)
 {
-    const uint32_t* c = s->mesh->triangles[triangle];
-    const ty_vec3* at = s->mesh->positions;
-    float square = ty_length_sqr(ty_sub(p, triangle_closest(at[c[0]], at[c[1]], at[c[2]], p)));
+    float square = ty_length_sqr(ty_sub(p, triangle_closest(s, triangle, p)));
     if (s->near[node] < 0 || square < s->v->values[node])
     {
         s->v->values[node] = square;
@@ -236,9 +219,7 @@ static void node_descend(scan* s, size_t node, ty_vec3 p)
     for (float before = TY_FLOAT_MAX; v->values[node] < before;)
     {
         before = v->values[node];
-        const uint32_t* c = s->mesh->triangles[s->near[node]];
-        const ty_vec3* at = s->mesh->positions;
-        ty_vec3 q = ty_sub(triangle_closest(at[c[0]], at[c[1]], at[c[2]], p), v->origin);
+        ty_vec3 q = ty_sub(triangle_closest(s, s->near[node], p), v->origin);
         const float low[3] = {q.x / v->step, q.y / v->step, q.z / v->step};
         int cell[3];
         for (int i = 0; i < 3; i++)

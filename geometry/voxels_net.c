@@ -295,16 +295,6 @@ static ty_status pieces_drop(net* n, ty_error* error)
 
 // --- the mesh ---
 
-// Cut along its shorter diagonal.
-static void quad_emit(ty_mesh* mesh, uint32_t first, const uint32_t q[4])
-{
-    const ty_vec3* p = mesh->positions;
-    bool across = ty_length_sqr(ty_sub(p[q[0]], p[q[2]])) <= ty_length_sqr(ty_sub(p[q[1]], p[q[3]]));
-    static const int cut[2][6] = {{0, 1, 3, 1, 2, 3}, {0, 1, 2, 0, 2, 3}};
-    for (int e = 0; e < 6; e++)
-        mesh->triangles[first + (uint32_t)e / 3][e % 3] = q[cut[across][e]];
-}
-
 static void vertex_finish(const net* n, ty_mesh* mesh, uint32_t v)
 {
     ty_voxel_sample s = ty_voxels_sample(n->field, mesh->positions[v]);
@@ -349,7 +339,7 @@ static ty_status net_mesh(net* n, ty_mesh** out, ty_error* error)
         uint32_t corners[4];
         for (int e = 0; e < 4; e++)
             corners[e] = (uint32_t)n->counts[n->quads[q][e]];
-        quad_emit(mesh, 2 * (uint32_t)q, corners);
+        ty_mesh_set_quad(mesh, 2 * (uint32_t)q, corners);
     }
     ty_mesh_compute_bounds(mesh);
     *out = mesh;

@@ -177,18 +177,6 @@ static void lattice_relax(const lattice* g, const shape* s, ty_vec3* u, ty_vec3*
     }
 }
 
-// Corners counter-clockwise seen from outside; the quad is cut along its shorter diagonal.
-static void quad_emit(ty_mesh* mesh, uint32_t* count, const int32_t q[4])
-{
-    const ty_vec3* p = mesh->positions;
-    bool first = ty_length_sqr(ty_sub(p[q[0]], p[q[2]])) <= ty_length_sqr(ty_sub(p[q[1]], p[q[3]]));
-    static const int cut[2][6] = {{0, 1, 3, 1, 2, 3}, {0, 1, 2, 0, 2, 3}};
-    for (int t = 0; t < 2; t++)
-        for (int e = 0; e < 3; e++)
-            mesh->triangles[*count + (uint32_t)t][e] = (uint32_t)q[cut[first][3 * t + e]];
-    *count += 2;
-}
-
 static void lattice_triangles(const lattice* g, ty_mesh* mesh)
 {
     uint32_t count = 0;
@@ -201,7 +189,7 @@ static void lattice_triangles(const lattice* g, ty_mesh* mesh)
                 for (int t = 0; t < size[c]; t++)
                 {
                     static const int corner[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-                    int32_t q[4];
+                    uint32_t q[4];
                     for (int e = 0; e < 4; e++)
                     {
                         const int* w = corner[side ? e : 3 - e];
@@ -209,9 +197,10 @@ static void lattice_triangles(const lattice* g, ty_mesh* mesh)
                         at[axis] = side ? size[axis] : 0;
                         at[b] = s + w[0];
                         at[c] = t + w[1];
-                        q[e] = *lattice_at(g, at[0], at[1], at[2]);
+                        q[e] = (uint32_t)*lattice_at(g, at[0], at[1], at[2]);
                     }
-                    quad_emit(mesh, &count, q);
+                    ty_mesh_set_quad(mesh, count, q);
+                    count += 2;
                 }
     }
     TY_ASSERT(count == mesh->triangle_count);

@@ -79,11 +79,16 @@ void ty_mesh_analyse(const ty_mesh* mesh, ty_mesh_topology* out); // needs welds
 void ty_mesh_smooth_field(const ty_mesh* mesh, float* field, float width);
 // One or two fields at once, for little more than one: the same bits.
 void ty_mesh_smooth_fields(const ty_mesh* mesh, float* const* fields, int field_count, float width);
+// A third of the area of the triangles about each vertex, m^2: [vertex_count], the caller frees it.
+double* ty_mesh_vertex_areas(const ty_mesh* mesh);
 
 // NULL if there is none.
 const ty_mesh_attribute* ty_mesh_find_attribute(const ty_mesh* mesh, const char* name);
 // Adds (or finds) an attribute of zeros; the values are owned by the mesh.
 float* ty_mesh_add_attribute(ty_mesh* mesh, const char* name, int components);
+
+// Two triangles from number first on: corners counter-clockwise seen from outside, cut along the shorter diagonal.
+void ty_mesh_set_quad(ty_mesh* mesh, uint32_t first, const uint32_t corners[4]);
 
 #define TY_MESH_MAX_SLOTS 4096
 
