@@ -106,12 +106,6 @@ float ty_voxels_value(const ty_voxels* v, ty_vec3 p)
     return sum;
 }
 
-static ty_vec3 hessian_times(const float h[6], ty_vec3 u)
-{
-    return ty_vec3_make(h[0] * u.x + h[3] * u.y + h[4] * u.z, h[3] * u.x + h[1] * u.y + h[5] * u.z,
-                        h[4] * u.x + h[5] * u.y + h[2] * u.z);
-}
-
 // The Hessian within the tangent plane, over the length of the gradient (Goldman 2005).
 void ty_voxel_curvature(const ty_voxel_sample* sample, float* k1, float* k2, ty_vec3* direction)
 {
@@ -123,7 +117,7 @@ void ty_voxel_curvature(const ty_voxel_sample* sample, float* k1, float* k2, ty_
         return;
     }
     ty_frame f = ty_frame_from_normal(ty_mul(sample->gradient, 1.0f / length));
-    ty_vec3 t = hessian_times(sample->hessian, f.t), b = hessian_times(sample->hessian, f.b);
+    ty_vec3 t = ty_symmetric_times(sample->hessian, f.t), b = ty_symmetric_times(sample->hessian, f.b);
     ty_curvature_tensor c = {ty_dot(f.t, t) / length, ty_dot(f.t, b) / length, ty_dot(f.b, b) / length};
     ty_curvature_decompose(c, f.t, f.b, k1, k2, direction);
 }

@@ -39,7 +39,7 @@ static ty_rgb intensity(const ty_light* light, ty_vec3 direction)
         return light->value;
     ty_vec3 d = ty_to_local(light->frame, direction);
     float s = ty_clamp((d.z - light->cos_outer) * light->fade, 0.0f, 1.0f);
-    ty_rgb value = ty_rgb_scale(light->value, s * s * (3.0f - 2.0f * s));
+    ty_rgb value = ty_rgb_scale(light->value, ty_smoothstep(s));
     return light->image && s > 0.0f ? ty_rgb_mul(value, projected(light, d)) : value;
 }
 

@@ -222,7 +222,7 @@ static float walk_shares(const ty_bsdf* b, float thickness, float shares[3])
     for (int i = 0; i < (b->grey ? 1 : 3); i++)
     {
         float s = ty_clamp((b->mean_free_path[i] / thickness - WALK_FROM) * (1.0f / (WALK_ALONE - WALK_FROM)), 0, 1);
-        shares[i] = s * s * (3.0f - 2.0f * s);
+        shares[i] = ty_smoothstep(s);
     }
     if (!b->grey)
         return (shares[0] + shares[1] + shares[2]) * (1.0f / 3.0f);

@@ -9,8 +9,7 @@ static const float water_range = 0.18f; // of wet basis above saturation, until 
 
 static float smoothstep(float low, float high, float x)
 {
-    float s = ty_clamp((x - low) / (high - low), 0.0f, 1.0f);
-    return s * s * (3.0f - 2.0f * s);
+    return ty_smoothstep(ty_clamp((x - low) / (high - low), 0.0f, 1.0f));
 }
 
 ty_moisture_law ty_moisture_law_default(void)

@@ -32,8 +32,7 @@ static float cooked_share(const cooking* c, float minute)
 {
     if (c->cook <= 0.0f)
         return 0.0f;
-    float s = ty_clamp((minute - c->soak) / c->cook, 0.0f, 1.0f);
-    return s * s * (3.0f - 2.0f * s);
+    return ty_smoothstep(ty_clamp((minute - c->soak) / c->cook, 0.0f, 1.0f));
 }
 
 ty_moisture cooking_state(const cooking* c, float minute)

@@ -200,7 +200,7 @@ void pile_turn(ty_body* body, ty_vec3 r)
 static void inertia_to_world(const float body[6], const ty_affine* r, float factor, float out[6])
 {
     ty_vec3 x = {r->x.x, r->y.x, r->z.x}, y = {r->x.y, r->y.y, r->z.y}, z = {r->x.z, r->y.z, r->z.z}; // rows
-    ty_vec3 jx = symmetric_times(body, x), jy = symmetric_times(body, y), jz = symmetric_times(body, z);
+    ty_vec3 jx = ty_symmetric_times(body, x), jy = ty_symmetric_times(body, y), jz = ty_symmetric_times(body, z);
     out[0] = factor * ty_dot(x, jx), out[1] = factor * ty_dot(y, jy), out[2] = factor * ty_dot(z, jz);
     out[3] = factor * ty_dot(x, jy), out[4] = factor * ty_dot(x, jz), out[5] = factor * ty_dot(y, jz);
 }

@@ -133,12 +133,6 @@ struct ty_pile
     int substeps;
 };
 
-static inline ty_vec3 symmetric_times(const float s[6], ty_vec3 v)
-{
-    return (ty_vec3){s[0] * v.x + s[3] * v.y + s[4] * v.z, s[3] * v.x + s[1] * v.y + s[5] * v.z,
-                     s[4] * v.x + s[5] * v.y + s[2] * v.z};
-}
-
 static inline ty_ball* pile_balls(const ty_pile* pile, int body)
 {
     return pile->balls + pile->ball_first[body];

@@ -15,14 +15,14 @@ static void body_push(ty_pile* pile, int i, ty_vec3 arm, ty_vec3 impulse)
     const motion* m = &pile->motions[i];
     ty_body* body = &pile->bodies[i];
     body->position = ty_mad(body->position, impulse, m->inverse_mass);
-    pile_turn(body, symmetric_times(m->inverse_inertia, ty_cross(arm, impulse)));
+    pile_turn(body, ty_symmetric_times(m->inverse_inertia, ty_cross(arm, impulse)));
     pile->poses[i].frame = pile_frame(pile, i);
 }
 
 static float weight(const motion* m, ty_vec3 arm, ty_vec3 n)
 {
     ty_vec3 u = ty_cross(arm, n);
-    return m->inverse_mass + ty_dot(u, symmetric_times(m->inverse_inertia, u));
+    return m->inverse_mass + ty_dot(u, ty_symmetric_times(m->inverse_inertia, u));
 }
 
 // Whether the touch of the ball at from had to be corrected.

@@ -16,12 +16,12 @@
 static float along(const motion* m, ty_vec3 arm, ty_vec3 direction)
 {
     ty_vec3 u = ty_cross(arm, direction);
-    return m->inverse_mass + ty_dot(u, symmetric_times(m->inverse_inertia, u));
+    return m->inverse_mass + ty_dot(u, ty_symmetric_times(m->inverse_inertia, u));
 }
 
 static float across(const motion* m, ty_vec3 arm, ty_vec3 s, ty_vec3 t)
 {
-    return ty_dot(ty_cross(arm, s), symmetric_times(m->inverse_inertia, ty_cross(arm, t)));
+    return ty_dot(ty_cross(arm, s), ty_symmetric_times(m->inverse_inertia, ty_cross(arm, t)));
 }
 
 // Inverse effective mass along the normal, and the mass below that of any tangential direction.
@@ -133,7 +133,7 @@ static void pair_prepare(ty_pile* pile, pair* p)
 static void kick(motion* m, ty_vec3 arm, ty_vec3 impulse, float sign)
 {
     m->v = ty_mad(m->v, impulse, sign * m->inverse_mass);
-    m->w = ty_mad(m->w, symmetric_times(m->inverse_inertia, ty_cross(arm, impulse)), sign);
+    m->w = ty_mad(m->w, ty_symmetric_times(m->inverse_inertia, ty_cross(arm, impulse)), sign);
 }
 
 static void pair_kick(ty_pile* pile, const pair* p, const contact* c, ty_vec3 impulse)
@@ -257,7 +257,7 @@ static void bodies_accelerate(void* context, int64_t begin, int64_t end, int wor
         if (m->asleep)
             continue;
         m->v = ty_add(m->v, step);
-        m->w = ty_add(m->w, symmetric_times(m->inverse_inertia, pile->rolls[i]));
+        m->w = ty_add(m->w, ty_symmetric_times(m->inverse_inertia, pile->rolls[i]));
     }
 }
 
@@ -278,10 +278,10 @@ static void body_rotate(ty_pile* pile, int i)
     float h = 1.0f / pile->def.rate;
     motion* m = &pile->motions[i];
     ty_vec3 l = spin_momentum(m->inverse_inertia, m->w);
-    ty_vec3 middle = ty_mad(m->w, symmetric_times(m->inverse_inertia, ty_cross(l, m->w)), 0.5f * h);
+    ty_vec3 middle = ty_mad(m->w, ty_symmetric_times(m->inverse_inertia, ty_cross(l, m->w)), 0.5f * h);
     pile_turn(&pile->bodies[i], ty_mul(middle, h));
     pile_refresh(pile, i);
-    m->w = symmetric_times(m->inverse_inertia, l);
+    m->w = ty_symmetric_times(m->inverse_inertia, l);
 }
 
 static void bodies_advance(void* context, int64_t begin, int64_t end, int worker)
@@ -308,7 +308,7 @@ static void body_roll(const ty_pile* pile, motion* m, ty_vec3* kept)
     float size = ty_length(wanted);
     if (size > limit)
         wanted = ty_mul(wanted, limit / size);
-    m->w = ty_add(m->w, symmetric_times(m->inverse_inertia, ty_sub(wanted, *kept)));
+    m->w = ty_add(m->w, ty_symmetric_times(m->inverse_inertia, ty_sub(wanted, *kept)));
     *kept = wanted;
 }
 

@@ -10,7 +10,7 @@ static float press_depth(const kit* k, float t)
 {
     bool stays = recipe_is_mould(k->recipe);
     float s = ty_min(ty_clamp(t / 0.4f, 0.0f, 1.0f), stays ? 1.0f : ty_clamp((0.8f - t) / 0.3f, 0.0f, 1.0f));
-    return s * s * (3.0f - 2.0f * s);
+    return ty_smoothstep(s);
 }
 
 static float top_of(const ty_xpbd* x, const kit* k)

@@ -45,9 +45,7 @@ typedef struct run
 static float noise(const float* lattice, int nx, int ny, float x, float y)
 {
     int i = (int)floorf(x), j = (int)floorf(y);
-    float fx = x - (float)i, fy = y - (float)j;
-    fx = fx * fx * (3.0f - 2.0f * fx);
-    fy = fy * fy * (3.0f - 2.0f * fy);
+    float fx = ty_smoothstep(x - (float)i), fy = ty_smoothstep(y - (float)j);
     const float *row = lattice + (j % ny) * nx, *next = lattice + ((j + 1) % ny) * nx;
     int a = i % nx, b = (i + 1) % nx;
     return ty_lerp(ty_lerp(row[a], row[b], fx), ty_lerp(next[a], next[b], fx), fy);
@@ -173,8 +171,7 @@ static void line_blend(const picture* p, int y, float* line)
 static void pixel_set(const picture* p, size_t at, float v)
 {
     const ty_fill_recipe* r = p->recipe;
-    float t = ty_clamp((v - r->tone[0]) / (r->tone[1] - r->tone[0]), 0.0f, 1.0f);
-    t = t * t * (3.0f - 2.0f * t);
+    float t = ty_smoothstep(ty_clamp((v - r->tone[0]) / (r->tone[1] - r->tone[0]), 0.0f, 1.0f));
     ty_rgb color = ty_rgb_lerp(r->low, r->high, t);
     const float values[3] = {color.r, color.g, color.b};
     for (int c = 0; c < 3; c++)

@@ -75,6 +75,11 @@ static inline float ty_lerp(float a, float b, float s)
 {
     return a + (b - a) * s;
 }
+// Cubic from 0 to 1 that is flat at both ends; t in 0..1.
+static inline float ty_smoothstep(float t)
+{
+    return t * t * (3.0f - 2.0f * t);
+}
 static inline float ty_sqr(float x)
 {
     return x * x;
@@ -121,6 +126,12 @@ static inline ty_vec3 ty_mad(ty_vec3 a, ty_vec3 b, float s)
 static inline float ty_dot(ty_vec3 a, ty_vec3 b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+// The symmetric matrix {xx, yy, zz, xy, xz, yz} times v.
+static inline ty_vec3 ty_symmetric_times(const float s[6], ty_vec3 v)
+{
+    return (ty_vec3){s[0] * v.x + s[3] * v.y + s[4] * v.z, s[3] * v.x + s[1] * v.y + s[5] * v.z,
+                     s[4] * v.x + s[5] * v.y + s[2] * v.z};
 }
 static inline ty_vec3 ty_cross(ty_vec3 a, ty_vec3 b)
 {
