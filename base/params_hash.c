@@ -92,13 +92,14 @@ static void add_strings(walk* w, const ty_param_strings* strings)
 static void add_value(walk* w, const ty_param* row, const void* at, size_t length)
 {
     const char* const* text = at;
-    const bool given = row->type == TY_PARAM_PATH && *text;
+    const bool given = (row->type == TY_PARAM_PATH || row->type == TY_PARAM_FRAMES) && *text;
     switch (row->type)
     {
     case TY_PARAM_STRING:
         add_text(w->hasher, *text);
         return;
     case TY_PARAM_PATH:
+    case TY_PARAM_FRAMES:
         ty_hasher_add(w->hasher, &given, sizeof given);
         return;
     case TY_PARAM_SCALAR_INPUT:

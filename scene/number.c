@@ -100,6 +100,7 @@ void ty_param_expected(const ty_param* row, ty_text* out)
         [TY_PARAM_SEED] = "a whole number 0..18446744073709551615",
         [TY_PARAM_STRING] = "a text",
         [TY_PARAM_PATH] = "the name of a file",
+        [TY_PARAM_FRAMES] = "the name of a file, or of files with #### for the number of the frame",
         [TY_PARAM_ENUM] = "",
         [TY_PARAM_SCALAR_INPUT] =
             "a number, { texture, value, scale, offset, uv, mapping, channel } or { attribute, ... }",
@@ -143,6 +144,7 @@ const char* ty_param_type_name(ty_param_type type)
         [TY_PARAM_SEED] = "seed",
         [TY_PARAM_STRING] = "text",
         [TY_PARAM_PATH] = "file",
+        [TY_PARAM_FRAMES] = "file or files",
         [TY_PARAM_ENUM] = "choice",
         [TY_PARAM_SCALAR_INPUT] = "number input",
         [TY_PARAM_COLOR_INPUT] = "colour input",
@@ -197,6 +199,7 @@ void ty_param_value_text(const ty_param* row, const void* def, ty_text* out)
         break;
     case TY_PARAM_STRING:
     case TY_PARAM_PATH:
+    case TY_PARAM_FRAMES:
         ty_text_add(out, *(const char* const*)field ? *(const char* const*)field : "");
         break;
     case TY_PARAM_ENUM:

@@ -273,6 +273,8 @@ bool ty_param_read(ty_reader* reader, ty_node* node, const ty_param* row, void* 
         return read_string(reader, node, row, field);
     case TY_PARAM_PATH:
         return (*(const char**)field = ty_files_use(reader->files, node, row->name)) != NULL;
+    case TY_PARAM_FRAMES:
+        return (*(const char**)field = ty_files_use_either(reader->files, node, row->name)) != NULL;
     case TY_PARAM_ENUM:
         return read_enum(reader, node, row, field);
     case TY_PARAM_SCALAR_INPUT:

@@ -126,6 +126,7 @@ static void add_type(ty_text* out, const ty_param* row)
         break;
     case TY_PARAM_STRING:
     case TY_PARAM_PATH:
+    case TY_PARAM_FRAMES:
         ty_text_add(out, "{\"type\": \"string\"}");
         break;
     case TY_PARAM_ENUM:
@@ -174,8 +175,8 @@ static bool is_keyed(const ty_param_table* table)
 
 static bool is_keyed_type(ty_param_type type)
 {
-    return type != TY_PARAM_STRING && type != TY_PARAM_PATH && type != TY_PARAM_ENUM && type != TY_PARAM_INT &&
-           type != TY_PARAM_GROUP && type != TY_PARAM_LIST;
+    return type != TY_PARAM_STRING && type != TY_PARAM_PATH && type != TY_PARAM_FRAMES && type != TY_PARAM_ENUM &&
+           type != TY_PARAM_INT && type != TY_PARAM_GROUP && type != TY_PARAM_LIST;
 }
 
 static void add_row(ty_text* out, const ty_param* row, const char* further, bool keyed)

@@ -152,6 +152,11 @@ const char* ty_files_use_frames(ty_files* files, ty_node* node, const char* what
     return use(files, node, what, true);
 }
 
+const char* ty_files_use_either(ty_files* files, ty_node* node, const char* what)
+{
+    return use(files, node, what, node->kind == TY_NODE_SCALAR && ty_path_is_sequence(node->text));
+}
+
 static ty_status hash_file(const char* path, ty_hash* out, ty_error* error)
 {
     FILE* file = fopen(path, "rb");

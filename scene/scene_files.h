@@ -34,5 +34,7 @@ const char* ty_files_find(ty_files* files, ty_node* node, const char* what);
 const char* ty_files_use(ty_files* files, ty_node* node, const char* what);
 // A pattern with #### for the numbers of frames, of which at least one is there.
 const char* ty_files_use_frames(ty_files* files, ty_node* node, const char* what);
+// Either, by whether the name has a #.
+const char* ty_files_use_either(ty_files* files, ty_node* node, const char* what);
 // Adds names and contents of entries [begin, end) in order.
 TY_CHECKED ty_status ty_files_add_to_hash(ty_files* files, int begin, int end, ty_hasher* hasher, ty_error* error);

@@ -20,6 +20,7 @@ typedef enum ty_param_type
     TY_PARAM_SEED,         // ty_seed
     TY_PARAM_STRING,       // const char*, owned by the reader's arena
     TY_PARAM_PATH,         // const char*, resolved against the file's folder and the search paths
+    TY_PARAM_FRAMES,       // the same, or a pattern with #### for the numbers of frames
     TY_PARAM_ENUM,         // int, index into choices
     TY_PARAM_SCALAR_INPUT, // ty_input: a number, { texture: name, ... } or { attribute: name, scale:, offset: }
     TY_PARAM_COLOR_INPUT,  // ty_input with three channels
