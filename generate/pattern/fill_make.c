@@ -51,11 +51,14 @@ static float noise(const float* lattice, int nx, int ny, float x, float y)
     return ty_lerp(ty_lerp(row[a], row[b], fx), ty_lerp(next[a], next[b], fx), fy);
 }
 
-static void feed_vary(const ty_fill_recipe* recipe, ty_gray_scott* field)
+static ty_status feed_vary(const ty_fill_recipe* recipe, ty_gray_scott* field, ty_error* error)
 {
     int w = recipe->cells[0], h = recipe->cells[1];
     int nx = (int)ty_max(1.0f, floorf((float)w / recipe->variation_size + 0.5f));
     int ny = (int)ty_max(1.0f, floorf((float)h / recipe->variation_size + 0.5f));
+    float* feed = TY_TRY_ALLOC(float, (size_t)w*(size_t)h);
+    if (!feed)
+        return ty_error_set(error, TY_NO_MEMORY, "no memory for %d x %d cells", w, h);
     float* lattice = TY_ALLOC(float, nx* ny);
     ty_rng rng = ty_rng_make(recipe->seed, 0x66656564, 0);
     for (int i = 0; i < nx * ny; i++)
@@ -64,9 +67,12 @@ static void feed_vary(const ty_fill_recipe* recipe, ty_gray_scott* field)
         for (int x = 0; x < w; x++)
         {
             float n = noise(lattice, nx, ny, (float)(x * nx) / (float)w, (float)(y * ny) / (float)h);
-            ty_gray_scott_feed(field, y)[x] *= 1.0f + recipe->variation * n;
+            feed[(size_t)y * (size_t)w + (size_t)x] = recipe->field.rates[0].feed * recipe->variation * n;
         }
+    ty_status status = ty_gray_scott_vary(field, feed, NULL, error);
     ty_free(lattice);
+    ty_free(feed);
+    return status;
 }
 
 static void drops_fall(const ty_fill_recipe* recipe, ty_gray_scott* field)
@@ -93,9 +99,10 @@ static ty_status field_make(const ty_fill_recipe* recipe, ty_gray_scott** out, t
     if (status != TY_OK)
         return status;
     if (recipe->variation > 0.0f)
-        feed_vary(recipe, *out);
-    drops_fall(recipe, *out);
-    return TY_OK;
+        status = feed_vary(recipe, *out, error);
+    if (status == TY_OK)
+        drops_fall(recipe, *out);
+    return status;
 }
 
 // --- when ---
@@ -283,7 +290,10 @@ ty_status ty_fill_make(const void* def, ty_workers* workers, const ty_frame_sink
     if (status == TY_OK)
         status = field_make(def, &r.field, error);
     if (status != TY_OK)
+    {
+        ty_gray_scott_destroy(r.field);
         return status;
+    }
     r.moments = moments_plan(def);
     status = r.moments ? run_frames(&r, sink, error)
                        : ty_error_set(error, TY_NO_MEMORY, "no memory for %d frames", r.recipe->loop.frames);

@@ -85,8 +85,8 @@ static const ty_param recipe_rows[] = {
     FIELD("scale", TY_PARAM_INT, "", 1, 8, scale, "pixels of a frame per cell"),
     {"tile", TY_PARAM_ENUM, "", 0, 0, tiles, NULL, offsetof(OWNER, tile),
      "both ways, or around alone (top and bottom are edges that stripes meet at right angles)", false},
-    FIELD("feed", TY_PARAM_FLOAT, "", 0, 0.2, field.feed, "F; .067 with kill .062 is a labyrinth"),
-    FIELD("kill", TY_PARAM_FLOAT, "", 0, 0.2, field.kill, "k; feed .0265 with .0605 are spots that divide"),
+    FIELD("feed", TY_PARAM_FLOAT, "", 0, 0.2, field.rates[0].feed, "F; .067 with kill .062 is a labyrinth"),
+    FIELD("kill", TY_PARAM_FLOAT, "", 0, 0.2, field.rates[0].kill, "k; feed .0265 with .0605 are spots that divide"),
     FIELD("variation", TY_PARAM_FLOAT, "", 0, 0.5, variation, "how much feed differs from place to place, relative"),
     FIELD("variation_size", TY_PARAM_FLOAT, "cells", 8, 8192, variation_size, "from one place to another"),
     FIELD("diffusion_u", TY_PARAM_FLOAT, "", 1e-3, 2, field.diffusion_u, "Du, cells^2 per unit of time"),
@@ -127,7 +127,7 @@ static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_err
 
 const ty_generator ty_fill_generator = {
     .kind = "fill",
-    .build_id = "fill 1",
+    .build_id = "fill 2",
     .product = TY_PRODUCT_FRAMES,
     .params = &recipe_table,
     .frame_count = frame_count,

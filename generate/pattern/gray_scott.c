@@ -1,30 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gray–Scott: u' = Du lap u - u v^2 + F (1 - u), v' = Dv lap v + u v^2 - (F + k) v. Planes with a border of one cell,
-// one operation order, no FMA: the loops vectorise and give the same bits everywhere.
-#include <string.h>
+// Gray–Scott: u' = Du lap u - u v^2 + F (1 - u), v' = Dv lap v + u v^2 - (F + k) v. The field, its cells and constants.
+#include "gray_scott_field.h"
 #include <tsuya/base/math.h>
 #include <tsuya/base/memory.h>
-#include <tsuya/generate/gray_scott.h>
-
-enum
-{
-    ALIGNED = 16,       // floats: rows begin at cache lines
-    PIECE_CELLS = 32768 // of a range: less is not worth waking a thread
-};
-
-typedef struct planes
-{
-    float *u, *v;
-} planes;
-
-struct ty_gray_scott
-{
-    ty_gray_scott_def def;
-    size_t stride;      // of a row, floats
-    planes front, back; // [height + 2][stride], cell (0, 0) at stride + ALIGNED
-    float *feed, *kill; // the same layout
-    float* memory;
-};
 
 ty_gray_scott_def ty_gray_scott_def_default(void)
 {
@@ -34,55 +12,85 @@ ty_gray_scott_def ty_gray_scott_def_default(void)
         .diffusion_u = 0.2097152f,
         .diffusion_v = 0.1048576f,
         .time_step = 1.0f,
-        .feed = 0.067f,
-        .kill = 0.062f,
+        .stencil = 5,
         .wrap_x = true,
         .wrap_y = true,
+        .rates = {{0.067f, 0.062f}},
+        .rate_count = 1,
     };
+}
+
+float ty_gray_scott_time_limit(const ty_gray_scott_def* def)
+{
+    // The fastest wave of the grid; in u the reaction adds F + v^2 to it, in v F + k. v^2 stays below .13, F counts
+    // from .07.
+    float wave = def->stencil == 9 ? 16.0f / 3.0f : 8.0f, u = 0.07f, v = 0.0f;
+    for (int i = 0; i < def->rate_count && i < TY_GRAY_SCOTT_MARKS; i++)
+    {
+        u = ty_max(u, def->rates[i].feed);
+        v = ty_max(v, def->rates[i].feed + def->rates[i].kill);
+    }
+    return 2.0f / ty_max(wave * def->diffusion_u + u + 0.13f, wave * def->diffusion_v + v);
+}
+
+static ty_status check_rates(const ty_gray_scott_def* def, ty_error* error)
+{
+    if (def->rate_count < 1 || def->rate_count > TY_GRAY_SCOTT_MARKS)
+        return ty_error_set(error, TY_BAD_INPUT, "%d marks; a field has 1..%d", def->rate_count, TY_GRAY_SCOTT_MARKS);
+    for (int i = 0; i < def->rate_count; i++)
+    {
+        ty_gray_scott_rates r = def->rates[i];
+        if (!(r.feed >= 0.0f && r.feed <= 1.0f && r.kill >= 0.0f && r.kill <= 1.0f))
+            return ty_error_set(error, TY_BAD_INPUT, "mark %d: feed %g and kill %g; both lie between 0 and 1", i,
+                                (double)r.feed, (double)r.kill);
+    }
+    return TY_OK;
 }
 
 static ty_status check(const ty_gray_scott_def* def, ty_error* error)
 {
     if (def->width < 8 || def->width > 32768 || def->height < 8 || def->height > 32768)
         return ty_error_set(error, TY_BAD_INPUT, "%d x %d cells; each side has 8..32768", def->width, def->height);
+    if (def->stencil != 5 && def->stencil != 9)
+        return ty_error_set(error, TY_BAD_INPUT, "stencil: %d points; there are 5 and 9", def->stencil);
     float most = ty_max(def->diffusion_u, def->diffusion_v);
     if (!(def->diffusion_u > 0.0f && def->diffusion_v > 0.0f && most < 10.0f))
         return ty_error_set(error, TY_BAD_INPUT, "diffusion: %g and %g; both lie above 0 and below 10",
                             (double)def->diffusion_u, (double)def->diffusion_v);
-    // Euler's bound for the fastest wave of the grid; .2 leaves room for the reaction.
-    float limit = 2.0f / (8.0f * most + 0.2f);
-    if (!(def->time_step > 0.0f && def->time_step < limit))
+    ty_status status = check_rates(def, error);
+    float limit = ty_gray_scott_time_limit(def);
+    if (status == TY_OK && !(def->time_step > 0.0f && def->time_step < limit))
         return ty_error_set(error, TY_BAD_INPUT, "time_step: %g; with these diffusions it lies above 0 and below %.4g",
                             (double)def->time_step, (double)limit);
-    return TY_OK;
+    return status;
 }
 
-static size_t cell(const ty_gray_scott* field, int y)
+// To a multiple of 2^-24: keep, feed and four edges then add up to 1 exactly, and what is even stays even.
+static float round_to_grid(double a)
 {
-    return (size_t)(y + 1) * field->stride + ALIGNED;
+    return (float)(floor(a * 0x1p24 + 0.5) * 0x1p-24);
 }
 
-// The border's copies of row y, and the border rows that copy it.
-static void border_fill(const ty_gray_scott* field, float* plane, int y)
+static gs_rates rates_make(const ty_gray_scott_def* def)
 {
-    const ty_gray_scott_def* def = &field->def;
-    float* row = plane + cell(field, y);
-    row[-1] = row[def->wrap_x ? def->width - 1 : 0];
-    row[def->width] = row[def->wrap_x ? 0 : def->width - 1];
-    size_t size = (size_t)def->width * sizeof(float); // corners are never read
-    if (y == 0)
-        memcpy(plane + cell(field, def->wrap_y ? def->height : -1), row, size);
-    if (y == def->height - 1)
-        memcpy(plane + cell(field, def->wrap_y ? -1 : def->height), row, size);
-}
-
-static void borders_fill(const ty_gray_scott* field)
-{
-    for (int y = 0; y < field->def.height; y++)
+    gs_rates r = {.time_step = def->time_step};
+    double dt = (double)def->time_step, u = dt * (double)def->diffusion_u, v = dt * (double)def->diffusion_v;
+    bool nine = def->stencil == 9;
+    r.edge_u = round_to_grid(nine ? u * 2.0 / 3.0 : u);
+    r.edge_v = round_to_grid(nine ? v * 2.0 / 3.0 : v);
+    r.corner_u = nine ? round_to_grid(u / 6.0) : 0.0f;
+    r.corner_v = nine ? round_to_grid(v / 6.0) : 0.0f;
+    r.base_u = (float)(1.0 - 4.0 * (double)r.edge_u - 4.0 * (double)r.corner_u);
+    r.base_v = (float)(1.0 - 4.0 * (double)r.edge_v - 4.0 * (double)r.corner_v);
+    for (int i = 0; i < TY_GRAY_SCOTT_MARKS; i++)
     {
-        border_fill(field, field->front.u, y);
-        border_fill(field, field->front.v, y);
+        const ty_gray_scott_rates* of = &def->rates[i < def->rate_count ? i : 0];
+        r.feed[i] = round_to_grid(dt * (double)of->feed);
+        r.kill[i] = round_to_grid(dt * (double)of->kill);
+        r.keep_u[i] = r.base_u - r.feed[i];
+        r.keep_v[i] = r.base_v - (r.feed[i] + r.kill[i]);
     }
+    return r;
 }
 
 ty_status ty_gray_scott_create(const ty_gray_scott_def* def, ty_gray_scott** out, ty_error* error)
@@ -93,25 +101,21 @@ ty_status ty_gray_scott_create(const ty_gray_scott_def* def, ty_gray_scott** out
         return status;
     ty_gray_scott* field = TY_ALLOC(ty_gray_scott, 1);
     field->def = *def;
-    field->stride = ((size_t)def->width + 2 * ALIGNED + ALIGNED - 1) / ALIGNED * ALIGNED;
-    size_t size = field->stride * ((size_t)def->height + 2);
-    field->memory = TY_TRY_ALLOC(float, 6 * size);
-    if (!field->memory)
+    field->rates = rates_make(def);
+    field->stride = ((size_t)def->width + 3 * GS_MARGIN - 1) / GS_MARGIN * GS_MARGIN;
+    size_t size = field->stride * (size_t)def->height;
+    field->memory = TY_TRY_ALLOC(float, 4 * size);
+    field->marks = TY_TRY_ALLOC(uint8_t, size + 2 * field->stride);
+    if (!field->memory || !field->marks)
     {
-        ty_free(field);
+        ty_gray_scott_destroy(field);
         return ty_error_set(error, TY_NO_MEMORY, "no memory for %d x %d cells", def->width, def->height);
     }
-    field->front = (planes){field->memory, field->memory + size};
-    field->back = (planes){field->memory + 2 * size, field->memory + 3 * size};
-    field->feed = field->memory + 4 * size;
-    field->kill = field->memory + 5 * size;
+    field->front = (gs_planes){field->memory, field->memory + size};
+    field->back = (gs_planes){field->memory + 2 * size, field->memory + 3 * size};
     for (int y = 0; y < def->height; y++)
         for (int x = 0; x < def->width; x++)
-        {
-            field->front.u[cell(field, y) + (size_t)x] = 1.0f;
-            field->feed[cell(field, y) + (size_t)x] = def->feed;
-            field->kill[cell(field, y) + (size_t)x] = def->kill;
-        }
+            field->front.u[gs_cell(field, y) + (size_t)x] = 1.0f;
     *out = field;
     return TY_OK;
 }
@@ -121,27 +125,56 @@ void ty_gray_scott_destroy(ty_gray_scott* field)
     if (!field)
         return;
     ty_free(field->memory);
+    ty_free(field->feed);
+    ty_free(field->kill);
+    ty_free(field->marks);
     ty_free(field);
 }
 
 float* ty_gray_scott_u(ty_gray_scott* field, int y)
 {
-    return field->front.u + cell(field, y);
+    return field->front.u + gs_cell(field, y);
 }
 
 float* ty_gray_scott_v(ty_gray_scott* field, int y)
 {
-    return field->front.v + cell(field, y);
+    return field->front.v + gs_cell(field, y);
 }
 
-float* ty_gray_scott_feed(ty_gray_scott* field, int y)
+uint8_t* ty_gray_scott_marks(ty_gray_scott* field, int y)
 {
-    return field->feed + cell(field, y);
+    return field->marks + gs_cell(field, y + 1);
 }
 
-float* ty_gray_scott_kill(ty_gray_scott* field, int y)
+// Times dt, in the layout of the cells; NULL for NULL.
+static ty_status plane_copy(const ty_gray_scott* field, const float* from, float** out, ty_error* error)
 {
-    return field->kill + cell(field, y);
+    int w = field->def.width, h = field->def.height;
+    *out = from ? TY_TRY_ALLOC(float, field->stride*(size_t)h) : NULL;
+    if (from && !*out)
+        return ty_error_set(error, TY_NO_MEMORY, "no memory for the rates of %d x %d cells", w, h);
+    for (int y = 0; from && y < h; y++)
+        for (int x = 0; x < w; x++)
+            (*out)[gs_cell(field, y) + (size_t)x] = field->def.time_step * from[(size_t)y * (size_t)w + (size_t)x];
+    return TY_OK;
+}
+
+ty_status ty_gray_scott_vary(ty_gray_scott* field, const float* feed, const float* kill, ty_error* error)
+{
+    float *new_feed = NULL, *new_kill = NULL;
+    ty_status status = plane_copy(field, feed, &new_feed, error);
+    if (status == TY_OK)
+        status = plane_copy(field, kill, &new_kill, error);
+    if (status != TY_OK)
+    {
+        ty_free(new_feed);
+        return status;
+    }
+    ty_free(field->feed);
+    ty_free(field->kill);
+    field->feed = new_feed;
+    field->kill = new_kill;
+    return TY_OK;
 }
 
 // The cell that (x, y) means across wrapped edges; NULL outside.
@@ -152,7 +185,7 @@ static float* find_cell(const ty_gray_scott* field, float* plane, int x, int y)
         x = (x % w + w) % w;
     if (field->def.wrap_y)
         y = (y % h + h) % h;
-    return x >= 0 && x < w && y >= 0 && y < h ? plane + cell(field, y) + x : NULL;
+    return x >= 0 && x < w && y >= 0 && y < h ? plane + gs_cell(field, y) + x : NULL;
 }
 
 void ty_gray_scott_drop(ty_gray_scott* field, float x, float y, float radius, ty_rng* rng)
@@ -168,49 +201,4 @@ void ty_gray_scott_drop(ty_gray_scott* field, float x, float y, float radius, ty
             *at = u;
             *find_cell(field, field->front.v, i, j) = v;
         }
-}
-
-// One row from itself and its neighbours, borders included.
-static void row_step(const ty_gray_scott_def* def, const float* restrict u, const float* restrict v,
-                     const float* restrict feed, const float* restrict kill, size_t stride, float* restrict out_u,
-                     float* restrict out_v)
-{
-    const float *uu = u - stride, *ud = u + stride, *vu = v - stride, *vd = v + stride;
-    float du = def->diffusion_u, dv = def->diffusion_v, dt = def->time_step;
-    for (int x = 0; x < def->width; x++)
-    {
-        float a = u[x], b = v[x], f = feed[x], reaction = a * b * b;
-        float lap_u = (u[x - 1] + u[x + 1]) + (uu[x] + ud[x]) - 4.0f * a;
-        float lap_v = (v[x - 1] + v[x + 1]) + (vu[x] + vd[x]) - 4.0f * b;
-        out_u[x] = a + dt * (du * lap_u - reaction + f * (1.0f - a));
-        out_v[x] = b + dt * (dv * lap_v + reaction - (f + kill[x]) * b);
-    }
-}
-
-static void rows_step(void* context, int64_t begin, int64_t end, int worker)
-{
-    const ty_gray_scott* field = context;
-    (void)worker;
-    for (int y = (int)begin; y < (int)end; y++)
-    {
-        size_t at = cell(field, y);
-        row_step(&field->def, field->front.u + at, field->front.v + at, field->feed + at, field->kill + at,
-                 field->stride, field->back.u + at, field->back.v + at);
-        border_fill(field, field->back.u, y);
-        border_fill(field, field->back.v, y);
-    }
-}
-
-void ty_gray_scott_step(ty_gray_scott* field, int step_count, ty_workers* workers)
-{
-    borders_fill(field); // cells may have been set from outside
-    int64_t rows = PIECE_CELLS / field->def.width + 1;
-    for (int i = 0; i < step_count; i++)
-    {
-        if (!ty_parallel_for(workers, field->def.height, rows, rows_step, field))
-            return;
-        planes done = field->back;
-        field->back = field->front;
-        field->front = done;
-    }
 }
