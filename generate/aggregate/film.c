@@ -3,12 +3,10 @@
 #include "film.h"
 #include <string.h>
 
-#define CHECK_TIME 0.02f // s, between two looks whether it is at rest
-#define WAITING 1e-3f    // size of an element that has not been poured yet: too small to be seen
+#define WAITING 1e-3f // size of an element that has not been poured yet: too small to be seen
 
 enum
 {
-    QUIET_CHECKS = 3,
     RESIZE_STEPS = 8, // substeps between two sizes of grains that grow
 };
 
@@ -71,7 +69,7 @@ static ty_status film_show(film* f, int frame, const ty_aggregate_sink* sink, ty
     ty_pile_measure(k->pile, &metrics, NULL);
     if (f->soft)
         ty_xpbd_speeds(f->soft, &metrics.speed_rms, &metrics.speed_max);
-    k->rest = f->calm >= QUIET_CHECKS;
+    k->rest = f->calm >= TY_PILE_CALM_CHECKS;
     k->stood = kit_top(k);
     if (k->cooking)
     {
@@ -148,7 +146,7 @@ static ty_status film_step(film* f, ty_error* error)
         yolks_step(f);
     }
     f->step++;
-    if (f->step % (int)(CHECK_TIME * k->recipe->settle.rate + 0.5f) == 0)
+    if (f->step % (int)(TY_PILE_CHECK_TIME * k->recipe->settle.rate + 0.5f) == 0)
         film_look(f);
     return status;
 }

@@ -2,15 +2,9 @@
 // When a pile is at rest, who sleeps until then, and a settling that is held and goes on.
 #include "pile_state.h"
 
-enum
-{
-    QUIET_CHECKS = 3,
-};
-
-#define CHECK_TIME 0.02f  // s
-#define QUIET_RMS 0.3e-3f // m/s
-#define QUIET_MAX 1.7e-3f // m/s
-#define QUIET_AFTER 0.09f // s
+#define CALM_RMS 0.3e-3f  // m/s
+#define CALM_MAX 1.7e-3f  // m/s
+#define CALM_AFTER 0.09f  // s
 #define SLEEP_AFTER 0.12f // s since the start
 
 static int lost_remove(ty_pile* pile)
@@ -48,11 +42,16 @@ static void all_wake(ty_pile* pile)
     }
 }
 
+bool ty_pile_speeds_are_calm(float rms, float largest)
+{
+    return rms < CALM_RMS && largest < CALM_MAX;
+}
+
 bool ty_pile_is_calm(const ty_pile* pile)
 {
     float rms, largest;
     ty_pile_speeds(pile, &rms, &largest);
-    return rms < QUIET_RMS && largest < QUIET_MAX && pile->time > QUIET_AFTER;
+    return ty_pile_speeds_are_calm(rms, largest) && pile->time > CALM_AFTER;
 }
 
 // One check: counts calm ones in a row. While few bodies move the others may sleep; when all do, or none moves for
@@ -62,7 +61,7 @@ static void rest_check(ty_pile* pile, int* calm)
     bool is_calm = ty_pile_is_calm(pile);
     int sleepers = sleepers_count(pile);
     *calm = is_calm ? *calm + 1 : 0;
-    if (sleepers > 0 && (sleepers == pile->count || *calm >= QUIET_CHECKS))
+    if (sleepers > 0 && (sleepers == pile->count || *calm >= TY_PILE_CALM_CHECKS))
     {
         all_wake(pile);
         pile->may_sleep = false;
@@ -75,7 +74,7 @@ static void rest_check(ty_pile* pile, int* calm)
 // From the substep after `settled` on, with so many calm checks in a row.
 static ty_pile_end settle(ty_pile* pile, int settled, int calm, float max_seconds, ty_workers* workers, int* lost)
 {
-    int interval = (int)(CHECK_TIME * pile->def.rate + 0.5f), steps = (int)(max_seconds * pile->def.rate);
+    int interval = (int)(TY_PILE_CHECK_TIME * pile->def.rate + 0.5f), steps = (int)(max_seconds * pile->def.rate);
     int out = 0, k = settled + 1;
     ty_pile_end end = TY_PILE_TIME;
     pile->pause.held = false;
@@ -86,7 +85,7 @@ static ty_pile_end settle(ty_pile* pile, int settled, int calm, float max_second
         {
             out = lost_remove(pile);
             rest_check(pile, &calm);
-            end = out > 0 ? TY_PILE_LOST : calm >= QUIET_CHECKS ? TY_PILE_REST : end;
+            end = out > 0 ? TY_PILE_LOST : calm >= TY_PILE_CALM_CHECKS ? TY_PILE_REST : end;
         }
         if (end == TY_PILE_TIME && ty_cancel_requested())
             end = TY_PILE_CANCELED;

@@ -112,7 +112,7 @@ ty_status kit_soften(kit* k, ty_pile_metrics* metrics, ty_error* error)
     ty_pile_measure(k->pile, metrics, NULL);
     ty_xpbd_speeds(x, &metrics->speed_rms, &metrics->speed_max);
     k->settled = *metrics;
-    k->rest = metrics->speed_rms < 0.3e-3f && metrics->speed_max < 1.7e-3f; // as of a rigid pile
+    k->rest = ty_pile_speeds_are_calm(metrics->speed_rms, metrics->speed_max);
     ty_xpbd_destroy(x);
     if (ty_cancel_requested())
         return ty_error_set(error, TY_INTERRUPTED, "interrupted while settling");

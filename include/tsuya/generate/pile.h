@@ -100,21 +100,25 @@ ty_vec3 ty_pile_gravity(const ty_pile* pile); // m/s^2, as it pulls by now: it c
 // without bias ("relax", Catto's soft step), friction, rolling resistance. Equal bits for any worker count.
 void ty_pile_step(ty_pile* pile, ty_workers* workers);
 
-// Speeds are below the bounds of rest: rms of the balls < .3 mm/s, none at 1.7 mm/s. Three times in a row, 20 ms apart,
-// that is rest.
-bool ty_pile_is_calm(const ty_pile* pile);
+// Rest is when speeds are calm, rms of the balls < .3 mm/s and none at 1.7 mm/s, at three checks in a row.
+#define TY_PILE_CHECK_TIME 0.02f // s, between two checks
+enum
+{
+    TY_PILE_CALM_CHECKS = 3,
+};
+bool ty_pile_speeds_are_calm(float rms, float largest);
+bool ty_pile_is_calm(const ty_pile* pile); // once the pile has moved for .09 s, as gravity comes up first
 void ty_pile_speeds(const ty_pile* pile, float* rms, float* largest); // of the balls, m/s
 
 typedef enum ty_pile_end
 {
-    TY_PILE_REST,     // three checks in a row below the bounds
+    TY_PILE_REST,     // as many checks in a row were calm
     TY_PILE_TIME,     // max_seconds have passed
     TY_PILE_LOST,     // bodies fell over the rim and were taken out: go on after putting others in
     TY_PILE_CANCELED, // ty_cancel_requested
 } ty_pile_end;
 
-// Steps until at rest (rms of ball speeds < .3 mm/s and largest < 1.7 mm/s at three checks 20 ms apart). Bodies lost
-// over the rim are taken out and counted in *lost (NULL is allowed).
+// Steps until at rest. Bodies lost over the rim are taken out and counted in *lost (NULL is allowed).
 ty_pile_end ty_pile_settle(ty_pile* pile, float max_seconds, ty_workers* workers, int* lost);
 
 // Goes on with a settling that ended by time or was canceled as if it had not, up to max_seconds from its begin; one
