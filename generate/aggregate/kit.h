@@ -69,6 +69,7 @@ float cooking_pore_area(const cooking* c, float minute); // m^2, mean of a pore
 float cooking_wet_basis(const cooking* c, float minute, float moisture, float exposed);
 
 // make.c
+TY_CHECKED ty_status kit_interrupted(const char* what, ty_error* error); // while what; TY_OK unless one asks to stop
 // Settles; drops a new grain for each that is lost over the rim.
 TY_CHECKED ty_status kit_rest(kit* k, ty_error* error);
 // Makes bodies those of the pile, with a push of about the speed of a fall through their width for those not held: they

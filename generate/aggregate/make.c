@@ -77,7 +77,7 @@ static ty_status container_check(const kit* k, ty_error* error)
 
 // --- adjust ---
 
-static ty_status interrupted(const char* what, ty_error* error)
+ty_status kit_interrupted(const char* what, ty_error* error)
 {
     return ty_cancel_requested() ? ty_error_set(error, TY_INTERRUPTED, "interrupted while %s", what) : TY_OK;
 }
@@ -101,7 +101,7 @@ ty_status kit_rest(kit* k, ty_error* error)
         kit_refill(k);
     }
     if (end == TY_PILE_CANCELED)
-        return ty_error_set(error, TY_INTERRUPTED, "interrupted while settling");
+        return kit_interrupted("settling", error);
     if (end == TY_PILE_LOST)
         return ty_error_set(error, TY_BAD_INPUT,
                             "fill.count: %d grains do not stay in the container: %d fell over its rim", k->count,
@@ -168,7 +168,7 @@ static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
         bool last = metrics->floating == 0 || k->round == ROUNDS - 1 || (!k->rest && !is_slippery(k));
         if (last)
             kit_watch(k, kept);
-        status = interrupted("polishing", error); // which then is not complete
+        status = kit_interrupted("polishing", error); // which then is not complete
         if (last || status != TY_OK)
             break;
         ty_pile_set_bodies(k->pile, kept);
@@ -304,7 +304,7 @@ static ty_status kit_make(kit* k, const ty_bytes* state, ty_aggregate** out, ty_
     double prepared = ty_time_now();
     status = state ? kit_resume(k, state->data, state->size, error) : kit_fill(k, error);
     if (status == TY_OK)
-        status = interrupted("filling", error); // an inflation ends early
+        status = kit_interrupted("filling", error); // an inflation ends early
     if (status == TY_OK && !state)
         status = kit_keep(k, false, error);
     double filled = ty_time_now();
@@ -329,7 +329,7 @@ static ty_status kit_make(kit* k, const ty_bytes* state, ty_aggregate** out, ty_
     if (status == TY_OK && kit_stands(k))
         status = kit_stand(k, &metrics, error);
     if (status == TY_OK)
-        status = interrupted("settling", error); // polishing ends early
+        status = kit_interrupted("settling", error); // polishing ends early
     if (status == TY_INTERRUPTED)
         return kit_stop(k, out, error);
     if (status == TY_OK)

@@ -55,7 +55,7 @@ static ty_status inflate(kit* k, const ty_vec3* points, int count, ty_error* err
         return TY_OK;
     float size = ty_pile_fit(k->pile, &k->top, fill->sweeps / 4, k->workers);
     if (ty_cancel_requested()) // before they were pushed apart
-        return ty_error_set(error, TY_INTERRUPTED, "interrupted while filling");
+        return kit_interrupted("filling", error);
     return ty_error_set(error, TY_BAD_INPUT, "fill.density: %g; these elements pack to %.2f at most in this container",
                         (double)fill->density, (double)(fill->density * size * size * size));
 }

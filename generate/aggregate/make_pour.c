@@ -108,9 +108,9 @@ ty_status kit_pour(kit* k, ty_error* error)
                 "or a lower rate",
                 p->count - p->poured, p->count, most);
     }
-    if (ty_cancel_requested())
-        return ty_error_set(error, TY_INTERRUPTED, "interrupted while pouring");
-    ty_log(TY_LOG_INFO, "aggregate: %d grains poured in %.2f s", p->poured,
-           (double)p->steps / (double)k->recipe->settle.rate);
-    return TY_OK;
+    ty_status status = kit_interrupted("pouring", error);
+    if (status == TY_OK)
+        ty_log(TY_LOG_INFO, "aggregate: %d grains poured in %.2f s", p->poured,
+               (double)p->steps / (double)k->recipe->settle.rate);
+    return status;
 }

@@ -82,7 +82,7 @@ static ty_status stand_settle(kit* k, ty_error* error)
     k->rest = end == TY_PILE_REST;
     k->count = ty_pile_count(k->pile);
     if (end == TY_PILE_CANCELED)
-        return ty_error_set(error, TY_INTERRUPTED, "interrupted while settling");
+        return kit_interrupted("settling", error);
     if (k->count > 0)
         return TY_OK;
     return ty_error_set(error, TY_BAD_INPUT, "container: nothing stays where the mould was");

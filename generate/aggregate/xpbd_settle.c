@@ -114,7 +114,5 @@ ty_status kit_soften(kit* k, ty_pile_metrics* metrics, ty_error* error)
     k->settled = *metrics;
     k->rest = ty_pile_speeds_are_calm(metrics->speed_rms, metrics->speed_max);
     ty_xpbd_destroy(x);
-    if (ty_cancel_requested())
-        return ty_error_set(error, TY_INTERRUPTED, "interrupted while settling");
-    return TY_OK;
+    return kit_interrupted("settling", error);
 }
