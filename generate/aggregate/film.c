@@ -184,26 +184,11 @@ static ty_status film_run(film* f, const ty_aggregate_sink* sink, ty_error* erro
     return status;
 }
 
-// The layers below have come to rest; the film shows how the last one falls.
-static ty_status film_layers(film* f, ty_error* error)
-{
-    kit* k = f->k;
-    ty_status status = TY_OK;
-    for (int layer = 1; layer <= k->recipe->layers.count && status == TY_OK; layer++)
-    {
-        status = kit_rest(k, error);
-        f->settled = ty_pile_count(k->pile);
-        if (status == TY_OK)
-            status = kit_layer(k, layer, error);
-    }
-    return status;
-}
-
 // Those of eggs that have lain for long are up.
 static void yolks_init(film* f)
 {
     const ty_body* bodies = ty_pile_bodies(f->k->pile);
-    for (int i = 0; i < f->settled; i++)
+    for (int i = 0; i < f->k->below; i++)
     {
         if (!mixture_is_roe(&f->k->mix, bodies[i].grain))
             continue;
@@ -223,7 +208,7 @@ static ty_status film_begin(film* f, ty_error* error)
     if (status == TY_OK)
         status = kit_fill(k, error);
     if (status == TY_OK)
-        status = film_layers(f, error);
+        status = kit_layers(k, error); // the film shows how the last one falls
     if (status == TY_OK && k->cooking)
         status = kit_rest(k, error);
     if (status == TY_OK && kit_stands(k) && !(recipe_is_mould(k->recipe) && press->strain > 0.0f))

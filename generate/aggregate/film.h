@@ -16,7 +16,6 @@ typedef struct film
 {
     kit* k;
     ty_aggregate* first; // the fill before it moves: prototypes, ids and attributes of every frame
-    int settled;         // bodies that lay at rest before the first frame
     int count;           // of bodies, those that wait too
     ty_body* bodies;     // [count] of the frame
     ty_affine* frames;   // [count] the same, of a pile that is bent

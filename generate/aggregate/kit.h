@@ -21,6 +21,7 @@ typedef struct kit
     const ty_fill_def* fill;           // of the layer that is selected in mix
     ty_mechanics mechanics;
     int layer;                 // which: 0 is the recipe's own fill
+    int below;                 // bodies that lay at rest when the latest layer came
     int wanted[MIXTURE_KINDS]; // bodies of each layer so far
     double spread;             // m^3 that all so far take, with the space between them
     ty_workers* workers;
@@ -96,6 +97,7 @@ TY_CHECKED ty_status kit_resume(kit* k, const void* state, size_t size, ty_error
 
 // make_fill.c
 TY_CHECKED ty_status kit_fill(kit* k, ty_error* error);
+float kit_inset(const kit* k);    // m, how far from the walls centres begin
 void kit_drop(kit* k, int count); // grains fall onto the pile: in layers over its planned surface, not touching
 // The count that fill asks for in the space that is left over what lies; place is before "fill." in the recipe.
 TY_CHECKED ty_status kit_count(kit* k, const char* place, float inset, int* out, ty_error* error);
@@ -108,8 +110,8 @@ TY_CHECKED ty_status kit_pour(kit* k, ty_error* error);       // until all have 
 // make_layers.c
 TY_CHECKED ty_status layers_check(const ty_aggregate_recipe* r, ty_error* error);
 void kit_layer_select(kit* k, int layer); // what is drawn and dropped from now on is of it
-// Selects the layer and lets it fall onto the pile.
-TY_CHECKED ty_status kit_layer(kit* k, int layer, ty_error* error);
+// Those above the one that is selected: each falls onto the pile once that is at rest. The last is still in the air.
+TY_CHECKED ty_status kit_layers(kit* k, ty_error* error);
 // As many new bodies of each layer fall onto the pile as are missing.
 void kit_refill(kit* k);
 

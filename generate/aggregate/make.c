@@ -310,12 +310,8 @@ static ty_status kit_make(kit* k, const ty_bytes* state, ty_aggregate** out, ty_
     double filled = ty_time_now();
     ty_pile_metrics metrics = {0};
     bool elastic = k->recipe->settle.solver == TY_SOLVER_XPBD;
-    for (int layer = k->layer + 1; layer <= k->recipe->layers.count && status == TY_OK; layer++)
-    {
-        status = kit_rest(k, error); // what lies below
-        if (status == TY_OK)
-            status = kit_layer(k, layer, error);
-    }
+    if (status == TY_OK)
+        status = kit_layers(k, error);
     if (status == TY_OK && !elastic)
     {
         bool moulded = recipe_is_mould(k->recipe) && k->recipe->press.strain > 0.0f; // the press packs what is filled

@@ -142,9 +142,9 @@ static ty_status kit_start(kit* k, int count, double volume, float inset, ty_err
     return status;
 }
 
-// How far from the walls centres begin. In a closed space they begin as far as they lie in the end: from the narrow
-// parts of a mesh, as an ear, none could get out.
-static float inset_of(const kit* k)
+// In a closed space they begin as far as they lie in the end: from the narrow parts of a mesh, as an ear, none could
+// get out.
+float kit_inset(const kit* k)
 {
     return (ty_container_is_open(k->container) ? 0.25f : 0.45f) * k->mix.width;
 }
@@ -180,7 +180,7 @@ static ty_status kit_plan(kit* k, float inset, int* count, double* volume, ty_er
 ty_status kit_fill(kit* k, ty_error* error)
 {
     const ty_fill_def* fill = &k->recipe->fill;
-    float inset = inset_of(k);
+    float inset = kit_inset(k);
     ty_status status = kit_count(k, "", inset, &k->count, error);
     if (status != TY_OK)
         return status;

@@ -25,14 +25,15 @@ void kit_layer_select(kit* k, int layer)
     k->fill = layer > 0 ? &layer_def(k->recipe, layer)->fill : &k->recipe->fill;
 }
 
-ty_status kit_layer(kit* k, int layer, ty_error* error)
+// Selects the layer and lets it fall onto the pile.
+static ty_status layer_fall(kit* k, int layer, ty_error* error)
 {
     char place[32];
     (void)snprintf(place, sizeof place, "layers[%d].", layer - 1);
     if (!ty_container_is_open(k->container))
         return ty_error_set(error, TY_BAD_INPUT, "%sfill: it falls from above; the container has no opening", place);
     kit_layer_select(k, layer);
-    float inset = 0.25f * k->mix.width;
+    float inset = kit_inset(k);
     int count;
     ty_status status = kit_count(k, place, inset, &count, error);
     if (status != TY_OK)
@@ -50,9 +51,22 @@ ty_status kit_layer(kit* k, int layer, ty_error* error)
     ty_log(TY_LOG_INFO, "aggregate: layer %d, %d elements onto %d", layer, count, k->count);
     k->spread += volume;
     k->wanted[layer] = count;
+    k->below = ty_pile_count(k->pile);
     k->count += count;
     kit_drop(k, count);
     return TY_OK;
+}
+
+ty_status kit_layers(kit* k, ty_error* error)
+{
+    ty_status status = TY_OK;
+    for (int layer = k->layer + 1; layer <= k->recipe->layers.count && status == TY_OK; layer++)
+    {
+        status = kit_rest(k, error);
+        if (status == TY_OK)
+            status = layer_fall(k, layer, error);
+    }
+    return status;
 }
 
 void kit_refill(kit* k)
