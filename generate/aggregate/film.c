@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The film of a pile as it is poured, pressed or settles: the same instances in every frame, each where it is by then.
 #include "film.h"
-#include <string.h>
 
 #define WAITING 1e-3f // size of an element that has not been poured yet: too small to be seen
 
@@ -42,22 +41,16 @@ static void velocities_haste(const film* f, ty_aggregate* shown)
 // Grains that grow press into each other: what is shown is polished, and the pile goes on from what is not.
 static void bodies_polish(film* f, ty_pile_metrics* metrics)
 {
-    ty_pile* pile = f->k->pile;
-    ty_body* kept = TY_ALLOC(ty_body, f->count);
-    ty_pile_metrics moving = *metrics;
-    memcpy(kept, ty_pile_bodies(pile), (size_t)f->count * sizeof *kept);
-    ty_pile_polish(pile, f->k->recipe->settle.polish, f->k->workers);
-    ty_pile_measure(pile, metrics, NULL);
-    metrics->speed_rms = moving.speed_rms;
-    metrics->speed_max = moving.speed_max;
+    ty_pile_metrics before;
+    ty_body* moving = kit_polish(f->k, &before, metrics, NULL);
     bodies_place(f);
     for (int i = 0; i < f->count; i++)
     {
-        f->bodies[i].velocity = kept[i].velocity;
-        f->bodies[i].spin = kept[i].spin;
+        f->bodies[i].velocity = moving[i].velocity;
+        f->bodies[i].spin = moving[i].spin;
     }
-    ty_pile_set_bodies(pile, kept);
-    ty_free(kept);
+    ty_pile_set_bodies(f->k->pile, moving);
+    ty_free(moving);
 }
 
 static ty_status film_show(film* f, int frame, const ty_aggregate_sink* sink, ty_error* error)
@@ -66,9 +59,6 @@ static ty_status film_show(film* f, int frame, const ty_aggregate_sink* sink, ty
     ty_pile_metrics metrics;
     if (f->soft)
         kit_soft_take(k, f->soft, true);
-    ty_pile_measure(k->pile, &metrics, NULL);
-    if (f->soft)
-        ty_xpbd_speeds(f->soft, &metrics.speed_rms, &metrics.speed_max);
     k->rest = f->calm >= TY_PILE_CALM_CHECKS;
     k->stood = kit_top(k);
     if (k->cooking)
@@ -77,7 +67,12 @@ static ty_status film_show(film* f, int frame, const ty_aggregate_sink* sink, ty
         film_rice_show(f);
     }
     else
+    {
+        ty_pile_measure(k->pile, &metrics, NULL);
         bodies_place(f);
+    }
+    if (f->soft)
+        ty_xpbd_speeds(f->soft, &metrics.speed_rms, &metrics.speed_max);
     ty_aggregate shown = *f->first; // lends what does not change; its own transforms are moved along
     shown.recipe = shown.hash = NULL;
     shown.metrics = kit_metrics(k, &metrics);

@@ -87,6 +87,9 @@ TY_CHECKED ty_status kit_film(kit* k, const ty_aggregate_sink* sink, ty_error* e
 
 // make_metrics.c
 char* kit_metrics(const kit* k, const ty_pile_metrics* m); // JSON; the caller frees it
+// Polishes the pile and measures it before and after; speeds are those before. held: of after, as of ty_pile_measure.
+// The bodies as they moved, for a pile that goes on, are the caller's.
+ty_body* kit_polish(kit* k, ty_pile_metrics* before, ty_pile_metrics* after, bool* held);
 // Goes on from rest for settle.watch seconds and measures how far bodies move; then all is as it was.
 void kit_watch(kit* k, const ty_body* rest);
 

@@ -135,6 +135,16 @@ static void floating_replace(kit* k, bool* held)
     kit_refill(k);
 }
 
+// Goes on from moving, with new elements for those not held, or with these stirred.
+static void pile_mend(kit* k, ty_body* moving, bool* held)
+{
+    ty_pile_set_bodies(k->pile, moving);
+    if (ty_container_is_open(k->container))
+        floating_replace(k, held);
+    else
+        kit_stir(k, moving, held);
+}
+
 // Such piles creep for long: they end by time.
 static bool is_slippery(const kit* k)
 {
@@ -144,40 +154,28 @@ static bool is_slippery(const kit* k)
 // Polishes a copy; where a grain floats after that, the unpolished pile settles on with that grain replaced or stirred.
 static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
 {
-    int count = k->count;
-    ty_body* kept = TY_ALLOC(ty_body, count);
-    bool* held = TY_ALLOC(bool, count);
+    bool *held = TY_ALLOC(bool, k->count), last = false;
     ty_status status = TY_OK;
     for (; status == TY_OK; k->round++)
     {
         status = kit_rest(k, error);
         if (status != TY_OK)
             break;
-        memcpy(kept, ty_pile_bodies(k->pile), (size_t)count * sizeof *kept);
-        ty_pile_metrics moving;
-        ty_pile_measure(k->pile, &moving, NULL);
-        ty_pile_polish(k->pile, k->recipe->settle.polish, k->workers);
-        ty_pile_measure(k->pile, metrics, held);
-        metrics->speed_rms = moving.speed_rms;
-        metrics->speed_max = moving.speed_max;
+        ty_body* moving = kit_polish(k, &k->settled, metrics, held);
         ty_log(TY_LOG_DEBUG,
                "aggregate: %d float after %d substeps, overlap %.2f %% before polishing and %.2f %% after",
-               metrics->floating, metrics->substeps, (double)moving.overlap_max * 100.0,
+               metrics->floating, metrics->substeps, (double)k->settled.overlap_max * 100.0,
                (double)metrics->overlap_max * 100.0);
-        k->settled = moving;
-        bool last = metrics->floating == 0 || k->round == ROUNDS - 1 || (!k->rest && !is_slippery(k));
+        last = metrics->floating == 0 || k->round == ROUNDS - 1 || (!k->rest && !is_slippery(k));
         if (last)
-            kit_watch(k, kept);
+            kit_watch(k, moving);
         status = kit_interrupted("polishing", error); // which then is not complete
-        if (last || status != TY_OK)
+        if (!last && status == TY_OK)
+            pile_mend(k, moving, held);
+        ty_free(moving);
+        if (last)
             break;
-        ty_pile_set_bodies(k->pile, kept);
-        if (ty_container_is_open(k->container))
-            floating_replace(k, held);
-        else
-            kit_stir(k, kept, held);
     }
-    ty_free(kept);
     ty_free(held);
     return status;
 }

@@ -17,6 +17,19 @@ static float body_drift(const ty_element* grain, const ty_body* from, const ty_b
     return farthest;
 }
 
+ty_body* kit_polish(kit* k, ty_pile_metrics* before, ty_pile_metrics* after, bool* held)
+{
+    int count = ty_pile_count(k->pile);
+    ty_body* moving = TY_ALLOC(ty_body, count);
+    memcpy(moving, ty_pile_bodies(k->pile), (size_t)count * sizeof *moving);
+    ty_pile_measure(k->pile, before, NULL);
+    ty_pile_polish(k->pile, k->recipe->settle.polish, k->workers);
+    ty_pile_measure(k->pile, after, held);
+    after->speed_rms = before->speed_rms;
+    after->speed_max = before->speed_max;
+    return moving;
+}
+
 void kit_watch(kit* k, const ty_body* rest)
 {
     int count = ty_pile_count(k->pile), steps = (int)(k->recipe->settle.watch * k->recipe->settle.rate);

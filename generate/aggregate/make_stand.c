@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What has been pressed or moulded comes to rest by itself: the mould goes, the bodies stay as they are bent.
 #include "kit.h"
-#include <string.h>
 #include <tsuya/base/log.h>
 
 enum
@@ -92,15 +91,8 @@ static ty_status stand_settle(kit* k, ty_error* error)
 // balances on another.
 static bool stand_finish(kit* k, bool last, ty_pile_metrics* metrics)
 {
-    int count = ty_pile_count(k->pile);
-    ty_body* rest = TY_ALLOC(ty_body, count);
-    bool* held = TY_ALLOC(bool, count);
-    memcpy(rest, ty_pile_bodies(k->pile), (size_t)count * sizeof *rest);
-    ty_pile_measure(k->pile, &k->settled, NULL);
-    ty_pile_polish(k->pile, k->recipe->settle.polish, k->workers);
-    ty_pile_measure(k->pile, metrics, held);
-    metrics->speed_rms = k->settled.speed_rms;
-    metrics->speed_max = k->settled.speed_max;
+    bool* held = TY_ALLOC(bool, ty_pile_count(k->pile));
+    ty_body* rest = kit_polish(k, &k->settled, metrics, held);
     bool done = last || metrics->floating == 0 || !k->rest;
     if (done)
         kit_watch(k, rest);
