@@ -77,7 +77,7 @@ static ty_status film_show(film* f, int frame, const ty_aggregate_sink* sink, ty
     shown.recipe = shown.hash = NULL;
     shown.metrics = kit_metrics(k, &metrics);
     mixture_move(&k->mix, k->recipe->seed, f->bodies, ty_pile_is_bent(k->pile) ? f->frames : NULL, f->yolks,
-                 (uint32_t)f->count, &shown);
+                 (uint32_t)f->count, k->owners, &shown);
     velocities_haste(f, &shown);
     f->first->velocities = shown.velocities; // made by the first frame
     f->first->spins = shown.spins;

@@ -6,10 +6,11 @@
 // Grains that take up water.
 typedef struct film_rice
 {
-    float *sizes, *grown; // [count] scales at first, and by now
-    float* exposed;       // [count] 1 at the surface of the heap as it comes off the fire, 0 deep in it
-    float raw;            // swelling with which the elements were made
-    bool stands;          // it has come off
+    float *sizes, *grown;  // [count] scales at first, and by now
+    float* exposed;        // [count] 1 at the surface of the heap as it comes off the fire, 0 deep in it
+    const float* moisture; // of f->first
+    float raw;             // swelling with which the elements were made
+    bool stands;           // it has come off
 } film_rice;
 
 typedef struct film

@@ -15,8 +15,7 @@ static float minute_at(const film* f, double moment)
 
 static float wet_basis_of(const film* f, float minute, int body)
 {
-    float moisture = ty_aggregate_find_attribute(f->first, "moisture")->values[body];
-    return cooking_wet_basis(f->k->cooking, minute, moisture, f->rice.exposed[body]);
+    return cooking_wet_basis(f->k->cooking, minute, f->rice.moisture[body], f->rice.exposed[body]);
 }
 
 // Off the fire water holds the grains together; in it nothing does.
@@ -67,19 +66,6 @@ int64_t film_rice_steps(const film* f, int frame, int64_t least)
     return needed > least ? needed : least;
 }
 
-// Of each egg, where eggs are mixed in, the further bodies are as wet as its first.
-static uint32_t body_of(const film* f, uint32_t instance)
-{
-    const kit* k = f->k;
-    uint32_t count = (uint32_t)ty_pile_count(k->pile);
-    if (instance < count)
-        return instance;
-    uint32_t eggs = (f->first->instance_count - count) / (TY_ROE_BODIES - 1), egg = (instance - count) % eggs, i = 0;
-    for (uint32_t seen = 0; seen <= egg; i++)
-        seen += mixture_is_roe(&k->mix, ty_pile_bodies(k->pile)[i].grain);
-    return i - 1;
-}
-
 void film_rice_show(film* f)
 {
     kit* k = f->k;
@@ -91,7 +77,7 @@ void film_rice_show(film* f)
     float area = 1e12f * cooking_pore_area(k->cooking, minute); // um^2
     for (uint32_t i = 0; i < f->first->instance_count; i++)
     {
-        wet_basis[i] = wet_basis_of(f, minute, (int)body_of(f, i));
+        wet_basis[i] = wet_basis_of(f, minute, (int)k->owners[i]);
         cooked[i] = state.cooked;
         pores[i] = area;
     }
@@ -105,6 +91,7 @@ void film_rice_init(film* f)
     f->rice.sizes = TY_ALLOC(float, count);
     f->rice.grown = TY_ALLOC(float, count);
     f->rice.exposed = TY_ALLOC(float, count);
+    f->rice.moisture = ty_aggregate_find_attribute(f->first, "moisture")->values;
     f->rice.raw = f->k->mechanics.swelling;
     for (int i = 0; i < count; i++)
         f->rice.sizes[i] = ty_pile_bodies(f->k->pile)[i].scale;

@@ -32,7 +32,8 @@ typedef struct kit
     ty_pile* pile;
     pour pour;
     ty_rng rng;
-    int count; // of grains, once filled
+    int count;        // of grains, once filled
+    uint32_t* owners; // once written: [instances], the body that each is of
     int lost, replaced;
     int removed;                 // by the thesis' filling
     ty_pile_metrics start;       // of the filling, before it settles

@@ -183,7 +183,7 @@ static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
 // --- the result ---
 
 // Chance and drying in one number: mean about 0, within -1..1, less at the surface.
-static void attributes_write(const kit* k, uint32_t count, const uint32_t* owners, ty_aggregate* out)
+static void attributes_write(const kit* k, uint32_t count, ty_aggregate* out)
 {
     float* moisture = ty_aggregate_add_attribute(out, "moisture");
     float* tint = ty_aggregate_add_attribute(out, "tint");
@@ -203,9 +203,9 @@ static void attributes_write(const kit* k, uint32_t count, const uint32_t* owner
     }
     for (uint32_t i = count; i < out->instance_count; i++) // further bodies of the same elements
     {
-        moisture[i] = moisture[owners[i]];
-        tint[i] = tint[owners[i]];
-        depth[i] = depth[owners[i]];
+        moisture[i] = moisture[k->owners[i]];
+        tint[i] = tint[k->owners[i]];
+        depth[i] = depth[k->owners[i]];
     }
     for (uint32_t i = 0; i < out->instance_count && wet_basis; i++)
         wet_basis[i] = ty_clamp(k->mechanics.state.wet_basis * (1.0f + KIT_WET_SPREAD * moisture[i]), 0.05f, 1.0f);
@@ -220,15 +220,13 @@ ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, 
     ty_affine* frames = ty_pile_is_bent(k->pile) ? TY_TRY_ALLOC(ty_affine, count) : NULL;
     for (uint32_t i = 0; i < count && frames; i++)
         frames[i] = ty_pile_frame(k->pile, (int)i);
-    uint32_t* owners = NULL;
     ty_aggregate* a = NULL;
     if (frames || !ty_pile_is_bent(k->pile))
-        a = mixture_write(&k->mix, k->recipe->seed, bodies, frames, count, &owners);
+        a = mixture_write(&k->mix, k->recipe->seed, bodies, frames, count, &k->owners);
     ty_free(frames);
     if (!a)
         return ty_error_set(error, TY_NO_MEMORY, "no memory for %u grains", count);
-    attributes_write(k, count, owners, a);
-    ty_free(owners);
+    attributes_write(k, count, a);
     a->metrics = kit_metrics(k, metrics);
     a->state = k->state; // now the aggregate's
     k->state = (ty_bytes){0};
@@ -370,6 +368,7 @@ static ty_status recipe_make(const void* def, const ty_bytes* state, ty_workers*
     status = sink ? kit_film(k, sink, error) : kit_make(k, state, out, error);
     ty_bytes_term(&k->state);
     ty_free(k->pour.bodies);
+    ty_free(k->owners);
     ty_pile_destroy(k->pile);
     ty_container_destroy(k->container);
     ty_container_destroy(k->ground);

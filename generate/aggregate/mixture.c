@@ -230,14 +230,41 @@ static uint32_t count_eggs(const mixture* m, const ty_body* bodies, uint32_t cou
     return eggs;
 }
 
+// Where all instances are, each body's own first, then whites, then yolks; owners[instance] is its body.
+static void bodies_place(const mixture* m, ty_seed seed, const ty_body* bodies, const ty_affine* frames,
+                         const ty_yolk* yolks, uint32_t count, uint32_t* owners, ty_aggregate* out)
+{
+    uint32_t eggs = count_eggs(m, bodies, count), egg = 0;
+    for (uint32_t i = 0; i < count; i++)
+    {
+        const uint32_t at[TY_ROE_BODIES] = {i, count + egg, count + eggs + egg};
+        ty_affine maps[TY_ROE_BODIES];
+        int parts = body_maps(m, seed, &bodies[i], i, yolks ? &yolks[i] : NULL, maps);
+        for (int k = 0; k < parts; k++)
+        {
+            out->transforms[at[k]] = maps[k];
+            owners[at[k]] = i;
+        }
+        if (frames && parts == 1)
+            out->transforms[i] = frames[i];
+        egg += parts > 1;
+    }
+}
+
+// Which of its body's instances one is.
+static int part_of(uint32_t instance, uint32_t count, const ty_aggregate* a)
+{
+    uint32_t eggs = (a->instance_count - count) / (TY_ROE_BODIES - 1);
+    return instance < count ? 0 : 1 + (int)((instance - count) / eggs);
+}
+
 ty_aggregate* mixture_write(mixture* m, ty_seed seed, const ty_body* bodies, const ty_affine* frames, uint32_t count,
                             uint32_t** owners)
 {
-    uint32_t eggs = count_eggs(m, bodies, count), egg = 0;
     int prototypes = m->grain_count, further[MIXTURE_KINDS];
     for (int i = 0; i < m->kind_count; i++)
         prototypes += m->kinds[i].def.kind == TY_ELEMENT_ROE ? TY_ROE_BODIES - 1 : 0;
-    uint32_t all = count + (TY_ROE_BODIES - 1) * eggs;
+    uint32_t all = count + (TY_ROE_BODIES - 1) * count_eggs(m, bodies, count);
     ty_aggregate* out = ty_aggregate_create(all, prototypes);
     *owners = TY_TRY_ALLOC(uint32_t, all);
     if (!out || !*owners)
@@ -248,47 +275,28 @@ ty_aggregate* mixture_write(mixture* m, ty_seed seed, const ty_body* bodies, con
         return NULL;
     }
     prototypes_write(m, further, out);
-    for (uint32_t i = 0; i < count; i++)
+    bodies_place(m, seed, bodies, frames, NULL, count, *owners, out);
+    for (uint32_t i = 0; i < all; i++)
     {
-        const uint32_t at[TY_ROE_BODIES] = {i, count + egg, count + eggs + egg};
-        ty_affine maps[TY_ROE_BODIES];
-        int parts = body_maps(m, seed, &bodies[i], i, NULL, maps);
-        for (int k = 0; k < parts; k++)
-        {
-            out->transforms[at[k]] = maps[k];
-            out->prototype_index[at[k]] =
-                k == 0 ? bodies[i].grain : (uint32_t)(further[m->kind_of[bodies[i].grain]] + k - 1);
-            out->ids[at[k]] = at[k];
-            (*owners)[at[k]] = i;
-        }
-        if (frames && parts == 1)
-            out->transforms[i] = frames[i];
-        egg += parts > 1;
+        uint32_t grain = bodies[(*owners)[i]].grain;
+        int part = part_of(i, count, out);
+        out->prototype_index[i] = part == 0 ? grain : (uint32_t)(further[m->kind_of[grain]] + part - 1);
+        out->ids[i] = i;
     }
     return out;
 }
 
 // The shells of eggs are shown upright, whatever way they have rolled.
 void mixture_move(const mixture* m, ty_seed seed, const ty_body* bodies, const ty_affine* frames, const ty_yolk* yolks,
-                  uint32_t count, ty_aggregate* out)
+                  uint32_t count, uint32_t* owners, ty_aggregate* out)
 {
     ty_vec3 *velocities = ty_aggregate_add_velocities(out), *spins = ty_aggregate_add_spins(out);
-    uint32_t eggs = count_eggs(m, bodies, count), egg = 0;
-    for (uint32_t i = 0; i < count; i++)
+    bodies_place(m, seed, bodies, frames, yolks, count, owners, out);
+    for (uint32_t i = 0; i < out->instance_count; i++)
     {
-        const uint32_t at[TY_ROE_BODIES] = {i, count + egg, count + eggs + egg};
-        ty_affine maps[TY_ROE_BODIES];
-        int parts = body_maps(m, seed, &bodies[i], i, &yolks[i], maps);
-        for (int k = 0; k < parts; k++)
-        {
-            out->transforms[at[k]] = maps[k];
-            velocities[at[k]] = bodies[i].velocity;
-            spins[at[k]] = parts > 1 ? (ty_vec3){0, 0, 0} : bodies[i].spin;
-        }
-        if (frames && parts == 1)
-            out->transforms[i] = frames[i];
-        if (parts > 1)
-            velocities[at[2]] = ty_add(bodies[i].velocity, yolks[i].speed);
-        egg += parts > 1;
+        const ty_body* b = &bodies[owners[i]];
+        bool yolk = part_of(i, count, out) == TY_ROE_BODIES - 1;
+        velocities[i] = yolk ? ty_add(b->velocity, yolks[owners[i]].speed) : b->velocity;
+        spins[i] = mixture_is_roe(m, b->grain) ? (ty_vec3){0, 0, 0} : b->spin;
     }
 }

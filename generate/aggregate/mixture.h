@@ -45,6 +45,7 @@ void mixture_draw(const mixture* m, ty_rng* rng, ty_body* body);
 TY_CHECKED ty_aggregate* mixture_write(mixture* m, ty_seed seed, const ty_body* bodies, const ty_affine* frames,
                                        uint32_t count, uint32_t** owners);
 bool mixture_is_roe(const mixture* m, uint32_t grain);
-// The same instances at another moment: transforms, velocities and spins. frames as above; yolks: [count], of eggs.
+// The same instances at another moment: transforms, velocities and spins. frames and owners as above, the latter
+// written again; yolks: [count], of eggs.
 void mixture_move(const mixture* m, ty_seed seed, const ty_body* bodies, const ty_affine* frames, const ty_yolk* yolks,
-                  uint32_t count, ty_aggregate* out);
+                  uint32_t count, uint32_t* owners, ty_aggregate* out);
