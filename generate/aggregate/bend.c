@@ -93,17 +93,12 @@ void ty_pile_bend(ty_pile* pile, int body, const ty_affine* map)
     pile->stale = true;
 }
 
-ty_affine pile_frame(const ty_pile* pile, int i)
+ty_affine ty_pile_frame(const ty_pile* pile, int i)
 {
     const ty_body* body = &pile->bodies[i];
     float size = body->scale * pile->growth;
     ty_affine frame = ty_affine_from_trs(body->position, body->rotation, ty_vec3_make(size, size, size));
     return pile->bends ? ty_affine_multiply(&frame, &pile->bends[i].map) : frame;
-}
-
-ty_affine ty_pile_frame(const ty_pile* pile, int body)
-{
-    return pile_frame(pile, body);
 }
 
 bool ty_pile_is_bent(const ty_pile* pile)

@@ -103,9 +103,9 @@ void ty_pile_measure(ty_pile* pile, ty_pile_metrics* out, bool* held)
             held[i] = is_held;
     }
     ty_free(supports);
-    out->contacts = pile->count > 0 ? 2.0f * (float)o.count / (float)pile->count : 0.0f;
-    out->loaded = pile->count > 0 ? 2.0f * (float)o.loaded / (float)pile->count : 0.0f;
-    out->neighbours = pile->count > 0 ? (float)(neighbours / pile->count) : 0.0f;
+    out->contacts = 2.0f * (float)o.count / (float)pile->count;
+    out->loaded = 2.0f * (float)o.loaded / (float)pile->count;
+    out->neighbours = (float)(neighbours / pile->count);
     out->overlap_max = o.largest / pile->mean_width;
     out->overlap_mean = o.count > 0 ? (float)(o.sum / o.count) / pile->mean_width : 0.0f;
     ty_pile_speeds(pile, &out->speed_rms, &out->speed_max);

@@ -37,11 +37,6 @@ typedef struct saved_body
     uint8_t asleep, slept;
 } saved_body;
 
-typedef struct saved_bend
-{
-    bend b; // whole: of an unbent body it is not what an identity would be made into
-} saved_bend;
-
 typedef struct saved_pair
 {
     int32_t a, b;
@@ -62,19 +57,14 @@ typedef struct saved_wall
 } saved_wall;
 
 _Static_assert(sizeof(saved_head) == 56 && sizeof(saved_body) == 108 && sizeof(saved_pair) == 12 &&
-                   sizeof(saved_touch) == 20 && sizeof(saved_bend) == 80 && sizeof(saved_wall) == 56,
+                   sizeof(saved_touch) == 20 && sizeof(bend) == 80 && sizeof(saved_wall) == 56,
                "saved structs have no gaps");
 
 static size_t saved_size(const saved_head* h)
 {
-    return sizeof *h + (size_t)h->body_count * sizeof(saved_body) + (size_t)h->bend_count * sizeof(saved_bend) +
+    return sizeof *h + (size_t)h->body_count * sizeof(saved_body) + (size_t)h->bend_count * sizeof(bend) +
            (size_t)h->pair_count * sizeof(saved_pair) + (size_t)h->touch_count * sizeof(saved_touch) +
            (size_t)h->wall_count * sizeof(saved_wall);
-}
-
-static int wall_count(const ty_pile* pile)
-{
-    return pile->walls ? ty_container_wall_count(pile->def.container) : 0;
 }
 
 // --- saving ---
@@ -104,7 +94,7 @@ static saved_head head_of(const ty_pile* pile)
         h.flags |= (pile->pause.rested ? RESTED : 0u) | (pile->pause.may_sleep ? PAUSE_MAY_SLEEP : 0u);
     h.body_count = pile->count;
     h.bend_count = pile->bends ? pile->count : 0;
-    h.wall_count = wall_count(pile);
+    h.wall_count = pile_moving_walls(pile);
     for (int i = 0; i < pile->pair_count; i++)
     {
         int touches = kept_touches(pile, &pile->pairs[i]);
@@ -171,11 +161,8 @@ ty_status ty_pile_save(const ty_pile* pile, ty_bytes* out, ty_error* error)
         return ty_error_set(error, TY_NO_MEMORY, "no memory for the state of %d bodies", pile->count);
     uint8_t* at = put(out->data, &h, sizeof h);
     at = bodies_put(pile, at);
-    for (int i = 0; i < h.bend_count; i++)
-    {
-        saved_bend s = {pile->bends[i]};
-        at = put(at, &s, sizeof s);
-    }
+    for (int i = 0; i < h.bend_count; i++) // whole: of an unbent body it is not what an identity would be made into
+        at = put(at, &pile->bends[i], sizeof(bend));
     at = pairs_put(pile, at);
     at = touches_put(pile, at);
     for (int w = 0; w < h.wall_count; w++)
@@ -242,14 +229,14 @@ static ty_status bends_check(const restorer* r)
 {
     for (int i = 0; i < r->head.bend_count; i++)
     {
-        saved_bend b;
+        bend b;
         take(r->bends, i, &b, sizeof b);
-        const ty_affine* m = &b.b.map;
+        const ty_affine* m = &b.map;
         float size = ty_length_sqr(m->x) + ty_length_sqr(m->y) + ty_length_sqr(m->z) + ty_length_sqr(m->t);
-        bool good = ty_affine_determinant(m) > 1e-3f && size < 1e3f && b.b.mean > 0.0f && b.b.mean < 100.0f;
-        good = good && b.b.most >= b.b.mean && b.b.most < 100.0f;
+        bool good = ty_affine_determinant(m) > 1e-3f && size < 1e3f && b.mean > 0.0f && b.mean < 100.0f;
+        good = good && b.most >= b.mean && b.most < 100.0f;
         for (int k = 0; k < 6; k++)
-            good = good && fabsf(b.b.inverse_inertia[k]) < 1e18f;
+            good = good && fabsf(b.inverse_inertia[k]) < 1e18f;
         if (!good)
             return damaged(r, "bent body", i);
     }
@@ -306,15 +293,15 @@ static ty_status head_check(restorer* r, const void* bytes, size_t size)
     good = good && h->max_radius >= 0.0f && h->max_radius < 1e3f;
     if (!good)
         return damaged(r, "head", 0);
-    if (h->wall_count != wall_count(r->pile))
+    if (h->wall_count != pile_moving_walls(r->pile))
         return ty_error_set(r->error, TY_BAD_FILE, "the state of the pile has %d moving walls, not %d", h->wall_count,
-                            wall_count(r->pile));
+                            pile_moving_walls(r->pile));
     if (saved_size(h) != size)
         return ty_error_set(r->error, TY_BAD_FILE, "the state of the pile is cut off");
     const uint8_t* at = (const uint8_t*)bytes + sizeof *h;
     r->bodies = at;
     r->bends = at + (size_t)h->body_count * sizeof(saved_body);
-    r->pairs = r->bends + (size_t)h->bend_count * sizeof(saved_bend);
+    r->pairs = r->bends + (size_t)h->bend_count * sizeof(bend);
     r->touches = r->pairs + (size_t)h->pair_count * sizeof(saved_pair);
     r->walls = r->touches + (size_t)h->touch_count * sizeof(saved_touch);
     return TY_OK;
@@ -383,10 +370,10 @@ static void bodies_take(const restorer* r)
     ty_pile_add(pile, now, r->head.body_count);
     for (int i = 0; i < r->head.bend_count; i++)
     {
-        saved_bend s;
-        take(r->bends, i, &s, sizeof s);
-        ty_pile_bend(pile, i, &s.b.map);
-        pile->bends[i] = s.b;
+        bend b;
+        take(r->bends, i, &b, sizeof b);
+        ty_pile_bend(pile, i, &b.map);
+        pile->bends[i] = b;
         pile_refresh(pile, i);
     }
     for (int w = 0; w < r->head.wall_count; w++)

@@ -156,9 +156,9 @@ float pile_wall(const ty_pile* pile, int wall, ty_vec3 p, ty_vec3* normal);
 
 // bend.c
 bend pile_bend_none(const ty_element* element);
-ty_affine pile_frame(const ty_pile* pile, int body); // element to world
 
 // wall.c
+int pile_moving_walls(const ty_pile* pile);                           // how many
 void pile_walls_place(ty_pile* pile);                                 // where they are at this time
 void pile_walls_see(ty_pile* pile);                                   // candidates are about to be found
 bool pile_walls_moved(const ty_pile* pile);                           // too far for the candidates
@@ -192,8 +192,6 @@ void pile_bridge_prepare(ty_pile* pile, pair* p, bool touching); // the pull of 
 // polish.c
 void pile_project(ty_pile* pile, ty_workers* workers); // one sweep of position corrections
 void pile_refresh_all(ty_pile* pile);
-
-// metrics.c
 
 // packing.c
 void pile_packing(ty_pile* pile, ty_pile_metrics* out); // phi and phi_balls

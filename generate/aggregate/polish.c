@@ -16,7 +16,7 @@ static void body_push(ty_pile* pile, int i, ty_vec3 arm, ty_vec3 impulse)
     ty_body* body = &pile->bodies[i];
     body->position = ty_mad(body->position, impulse, m->inverse_mass);
     pile_turn(body, ty_symmetric_times(m->inverse_inertia, ty_cross(arm, impulse)));
-    pile->poses[i].frame = pile_frame(pile, i);
+    pile->poses[i].frame = ty_pile_frame(pile, i);
 }
 
 static float weight(const motion* m, ty_vec3 arm, ty_vec3 n)
@@ -74,16 +74,10 @@ void pile_project(ty_pile* pile, ty_workers* workers)
     pile_sweep(pile, workers, pair_project);
 }
 
-static void refresh_range(void* context, int64_t begin, int64_t end, int worker)
-{
-    (void)worker;
-    for (int64_t i = begin; i < end; i++)
-        pile_refresh(context, (int)i);
-}
-
 void pile_refresh_all(ty_pile* pile)
 {
-    ty_parallel_all(NULL, pile->count, pile->count + 1, refresh_range, pile);
+    for (int i = 0; i < pile->count; i++)
+        pile_refresh(pile, i);
 }
 
 static void stop(ty_pile* pile)

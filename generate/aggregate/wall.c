@@ -42,20 +42,20 @@ ty_vec3 pile_wall_velocity(const ty_pile* pile, int wall, ty_vec3 p)
     return ty_add(m->velocity, ty_cross(m->spin, ty_sub(p, m->position)));
 }
 
-static int wall_count(const ty_pile* pile)
+int pile_moving_walls(const ty_pile* pile)
 {
     return pile->walls ? ty_container_wall_count(pile->def.container) : 0;
 }
 
 void pile_walls_place(ty_pile* pile)
 {
-    for (int w = 0; w < wall_count(pile); w++)
+    for (int w = 0; w < pile_moving_walls(pile); w++)
         pile->walls[w].now = pile->wall_fn(pile->wall_context, w, pile->time);
 }
 
 void pile_walls_see(ty_pile* pile)
 {
-    for (int w = 0; w < wall_count(pile); w++)
+    for (int w = 0; w < pile_moving_walls(pile); w++)
     {
         moving_wall* wall = &pile->walls[w];
         wall->seen = wall->now;
@@ -69,7 +69,7 @@ void pile_walls_see(ty_pile* pile)
 // As of a body: an angle is at most 2.1 times the distance of its quaternions.
 bool pile_walls_moved(const ty_pile* pile)
 {
-    for (int w = 0; w < wall_count(pile); w++)
+    for (int w = 0; w < pile_moving_walls(pile); w++)
     {
         const moving_wall* wall = &pile->walls[w];
         ty_quat p = wall->now.rotation, q = wall->seen.rotation;
