@@ -2,6 +2,7 @@
 // Rice that is soaked, cooked and left to stand in a film: the laws of its water, grains that grow in the heap and push
 // it up without reaching into each other, and what drying at the surface does.
 #include "base/cmocka_all.h"
+#include "mesh_overlap.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +19,7 @@ typedef struct film
     ty_affine transforms[FRAMES][GRAINS];
     float wet_basis[FRAMES][GRAINS], cooked[FRAMES], pores[FRAMES], moisture[GRAINS];
     double overlap[FRAMES];
+    mesh_overlap meshes; // of the frame as it comes off the fire
     int shown;
 } film;
 
@@ -44,6 +46,8 @@ static ty_status keep(void* context, int frame, ty_aggregate* a, ty_error* error
     const char* overlap = strstr(a->metrics, "\"overlap_max_percent\": ");
     assert_non_null(overlap);
     f->overlap[frame - 1] = atof(overlap + 23);
+    if (frame == 7)
+        f->meshes = mesh_overlap_measure(a, NULL, 2.5e-3f);
     return TY_OK;
 }
 
@@ -159,6 +163,22 @@ static void heaps_rise_and_sink(void** state)
         assert_true(whole.overlap[frame] < 0.2);
 }
 
+// Of the meshes that are shown: what is left is what the balls of a grain leave out.
+static void frames_are_polished(void** state)
+{
+    (void)state;
+    static film raw;
+    ty_aggregate_recipe r = recipe_make();
+    r.moisture.drying = 0.5f;
+    r.settle.polish = 0;
+    make_whole();
+    shoot(&r, NULL, &raw);
+    float left = whole.meshes.mean * whole.meshes.pairs, there = raw.meshes.mean * raw.meshes.pairs;
+    print_message("  overlap a grain %.2f %% of the width, %.2f without, at most %.2f and %.2f\n", (double)left * 100.0,
+                  (double)there * 100.0, (double)whole.meshes.most * 100.0, (double)raw.meshes.most * 100.0);
+    assert_true(left < 0.75f * there);
+}
+
 // What lies at the top loses more than what lies below, and none without drying.
 static void surfaces_dry_first(void** state)
 {
@@ -207,7 +227,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(water_follows_its_laws), cmocka_unit_test(grains_swell_by_their_water),
         cmocka_unit_test(heaps_rise_and_sink),    cmocka_unit_test(surfaces_dry_first),
-        cmocka_unit_test(states_are_said_once),
+        cmocka_unit_test(states_are_said_once),   cmocka_unit_test(frames_are_polished),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
