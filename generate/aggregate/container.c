@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Containers as sampled distance fields: a half-plane table for turned shapes, a grid for meshes, planes for the box.
+#include "closed_mesh.h"
 #include "container_state.h"
 #include "hollow.h"
 #include <string.h>
-#include <tsuya/geometry/mesh_file.h>
 
 enum
 {
@@ -197,29 +197,6 @@ static ty_bounds bowl_interior(const ty_shape_def* shape, ty_bounds outside)
     return (ty_bounds){{-radius, top.y - depth, -radius}, {radius, rim, radius}};
 }
 
-static ty_status mesh_load(const ty_container_def* def, ty_mesh** mesh, ty_error* error)
-{
-    if (!def->mesh || !def->mesh[0])
-        return ty_error_set(error, TY_BAD_INPUT, "container.mesh: a path is needed with shape mesh");
-    ty_status status = ty_mesh_read(def->mesh, mesh, error);
-    if (status != TY_OK)
-        return status;
-    ty_mesh_topology topology;
-    ty_mesh_analyse(*mesh, &topology);
-    if (topology.closed)
-        return TY_OK;
-    ty_mesh_destroy(*mesh);
-    *mesh = NULL;
-    if (topology.boundary_edges == 0 && topology.volume < 0.0)
-        return ty_error_set(error, TY_BAD_INPUT,
-                            "container.mesh: %s faces inwards (its volume is %.3g cm^3): turn it over", def->mesh,
-                            topology.volume * 1e6);
-    return ty_error_set(
-        error, TY_BAD_INPUT,
-        "container.mesh: %s is not a closed outward surface (%u open edges, %u with more than two faces)", def->mesh,
-        topology.boundary_edges, topology.nonmanifold_edges);
-}
-
 // The hollow of a vessel, from the sampled distances, and what fits in it.
 static ty_status vessel_find(ty_container* c, ty_error* error)
 {
@@ -287,7 +264,7 @@ static const int shape_kinds[] = {TY_SHAPE_BOWL, TY_SHAPE_BOX, TY_SHAPE_SPHERE, 
 static ty_status shape_make(ty_container* c, ty_mesh** mesh, ty_error* error)
 {
     if (c->def.kind == TY_CONTAINER_MESH)
-        return mesh_load(&c->def, mesh, error);
+        return closed_mesh_read("container", "shape mesh", c->def.mesh, mesh, error);
     if (c->def.kind == TY_CONTAINER_ONIGIRI)
     {
         c->interior = c->outside = onigiri_bounds(&c->def.onigiri);

@@ -1,29 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Elements that are bent out of a shape: balls, grapes, beans, tofu, pebbles; and closed meshes of files.
+#include "closed_mesh.h"
 #include "element_kinds.h"
-#include <tsuya/geometry/mesh_file.h>
 #include <tsuya/geometry/shape.h>
 
 // --- meshes of files ---
-
-static ty_status file_mesh(const ty_element_def* def, const char* name, ty_mesh** out, ty_error* error)
-{
-    *out = NULL;
-    if (!def->mesh || !def->mesh[0])
-        return ty_error_set(error, TY_BAD_INPUT, "%s.mesh: a path is needed with kind mesh", name);
-    ty_status status = ty_mesh_read(def->mesh, out, error);
-    if (status != TY_OK)
-        return status;
-    ty_mesh_topology topology;
-    ty_mesh_analyse(*out, &topology);
-    if (topology.closed)
-        return TY_OK;
-    ty_mesh_destroy(*out);
-    *out = NULL;
-    return ty_error_set(error, TY_BAD_INPUT,
-                        "%s.mesh: %s is not a closed outward surface (%u open edges, %u with more than two faces)",
-                        name, def->mesh, topology.boundary_edges, topology.nonmanifold_edges);
-}
 
 static ty_vec3 extent_sorted(ty_bounds b)
 {
@@ -35,7 +16,7 @@ static ty_vec3 extent_sorted(ty_bounds b)
 ty_status ty_solid_complete(ty_element_def* def, const char* name, ty_error* error)
 {
     ty_mesh* mesh;
-    ty_status status = file_mesh(def, name, &mesh, error);
+    ty_status status = closed_mesh_read(name, "kind mesh", def->mesh, &mesh, error);
     if (status != TY_OK)
         return status;
     ty_vec3 size = extent_sorted(mesh->bounds);
@@ -52,7 +33,7 @@ ty_status ty_solid_complete(ty_element_def* def, const char* name, ty_error* err
 
 static ty_status file_mesh_scaled(const ty_element_def* def, ty_mesh** out, ty_error* error)
 {
-    ty_status status = file_mesh(def, "element", out, error);
+    ty_status status = closed_mesh_read("element", "kind mesh", def->mesh, out, error);
     if (status != TY_OK)
         return status;
     float scale = def->length / extent_sorted((*out)->bounds).x;
