@@ -9,6 +9,17 @@
 #include <tsuya/geometry/mesh_file.h>
 #include <unistd.h>
 
+// m
+static inline void set_bowl(ty_shape_def* shape, float radius, float height, float thickness, float foot_radius,
+                            float foot_height)
+{
+    shape->radius = radius;
+    shape->height = height;
+    shape->thickness = thickness;
+    shape->foot_radius = foot_radius;
+    shape->foot_height = foot_height;
+}
+
 static inline ty_aggregate* made(const ty_aggregate_recipe* recipe, ty_workers* workers)
 {
     ty_aggregate* out = NULL;

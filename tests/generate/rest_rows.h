@@ -72,11 +72,7 @@ static void bowl_scale(ty_aggregate_recipe* r, float scale)
 static ty_aggregate_recipe rice_bowl(int count)
 {
     ty_aggregate_recipe r = ty_aggregate_recipe_default();
-    r.container.shape.radius = 0.0385f;
-    r.container.shape.height = 0.0385f;
-    r.container.shape.thickness = 0.0022f;
-    r.container.shape.foot_radius = 0.0165f;
-    r.container.shape.foot_height = 0.005f;
+    set_bowl(&r.container.shape, 0.0385f, 0.0385f, 0.0022f, 0.0165f, 0.005f);
     r.container.shape.curve = 3.0f;
     r.fill.heap = 0.014f;
     r.fill.count = count;
@@ -90,11 +86,7 @@ static ty_aggregate_recipe roe_bowl(int count)
     ty_aggregate_recipe r = ty_aggregate_recipe_default();
     r.element.kind = TY_ELEMENT_ROE;
     r.element.variation = 0.05f;
-    r.container.shape.radius = 0.0205f;
-    r.container.shape.height = 0.0125f;
-    r.container.shape.thickness = 0.0016f;
-    r.container.shape.foot_radius = 0.008f;
-    r.container.shape.foot_height = 0.0006f;
+    set_bowl(&r.container.shape, 0.0205f, 0.0125f, 0.0016f, 0.008f, 0.0006f);
     r.container.shape.curve = 2.6f;
     r.fill.heap = 0.012f;
     r.fill.count = count;

@@ -73,11 +73,7 @@ static void test_container_mirrors_shapes(void** state)
 static ty_aggregate_recipe small_bowl(void)
 {
     ty_aggregate_recipe r = ty_aggregate_recipe_default();
-    r.container.shape.radius = 0.024f;
-    r.container.shape.height = 0.021f;
-    r.container.shape.thickness = 0.0018f;
-    r.container.shape.foot_radius = 0.010f;
-    r.container.shape.foot_height = 0.003f;
+    set_bowl(&r.container.shape, 0.024f, 0.021f, 0.0018f, 0.010f, 0.003f);
     r.element.variants = 4;
     r.fill.count = 240;
     r.fill.heap = 6e-3f;

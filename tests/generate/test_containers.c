@@ -6,11 +6,7 @@
 static ty_aggregate_recipe small(void)
 {
     ty_aggregate_recipe r = ty_aggregate_recipe_default();
-    r.container.shape.radius = 0.024f;
-    r.container.shape.height = 0.021f;
-    r.container.shape.thickness = 0.0025f;
-    r.container.shape.foot_radius = 0.010f;
-    r.container.shape.foot_height = 0.003f;
+    set_bowl(&r.container.shape, 0.024f, 0.021f, 0.0025f, 0.010f, 0.003f);
     r.element.variants = 3;
     r.element.divisions = 6;
     r.fill.count = 160;

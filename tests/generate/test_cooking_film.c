@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rice that is soaked, cooked and left to stand in a film: the laws of its water, grains that grow in the heap and push
 // it up without reaching into each other, and what drying at the surface does.
-#include "base/cmocka_all.h"
 #include "mesh_overlap.h"
+#include "recipe_made.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,9 +43,7 @@ static ty_status keep(void* context, int frame, ty_aggregate* a, ty_error* error
     memcpy(f->moisture, attribute(a, "moisture"), sizeof f->moisture);
     f->cooked[frame - 1] = attribute(a, "cooked")[GRAINS - 1];
     f->pores[frame - 1] = attribute(a, "pore_area")[0];
-    const char* overlap = strstr(a->metrics, "\"overlap_max_percent\": ");
-    assert_non_null(overlap);
-    f->overlap[frame - 1] = atof(overlap + 23);
+    f->overlap[frame - 1] = metric(a, "overlap_max_percent");
     if (frame == 7)
         f->meshes = mesh_overlap_measure(a, NULL, 2.5e-3f);
     return TY_OK;
@@ -55,11 +53,7 @@ static ty_aggregate_recipe recipe_make(void)
 {
     ty_aggregate_recipe r = ty_aggregate_recipe_default();
     r.element.variants = 2;
-    r.container.shape.radius = 0.019f;
-    r.container.shape.height = 0.016f;
-    r.container.shape.foot_radius = 0.008f;
-    r.container.shape.foot_height = 0.002f;
-    r.container.shape.thickness = 0.0016f;
+    set_bowl(&r.container.shape, 0.019f, 0.016f, 0.0016f, 0.008f, 0.002f);
     r.fill.count = GRAINS;
     r.fill.sprinkle = 0.0f;
     r.settle.rate = 1500.0f;

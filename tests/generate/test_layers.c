@@ -22,11 +22,7 @@ static ty_layer_def eggs(void)
 static ty_aggregate_recipe small_bowl(ty_layer_def* layers, int count)
 {
     ty_aggregate_recipe r = ty_aggregate_recipe_default();
-    r.container.shape.radius = 0.024f;
-    r.container.shape.height = 0.021f;
-    r.container.shape.thickness = 0.0018f;
-    r.container.shape.foot_radius = 0.010f;
-    r.container.shape.foot_height = 0.003f;
+    set_bowl(&r.container.shape, 0.024f, 0.021f, 0.0018f, 0.010f, 0.003f);
     r.element.variants = VARIANTS;
     r.element.divisions = 8;
     r.fill.count = RICE;

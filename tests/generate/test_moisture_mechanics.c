@@ -98,10 +98,7 @@ static void test_file(void** state)
     (void)state;
     ty_aggregate_recipe r = ty_aggregate_recipe_default();
     r.element.variants = 1;
-    r.container.shape.radius = r.container.shape.height = 0.015f;
-    r.container.shape.thickness = 0.0015f;
-    r.container.shape.foot_radius = 0.007f;
-    r.container.shape.foot_height = 0.002f;
+    set_bowl(&r.container.shape, 0.015f, 0.015f, 0.0015f, 0.007f, 0.002f);
     r.fill.count = 50;
     ty_aggregate* none = made(&r, NULL);
     assert_null(ty_aggregate_find_attribute(none, "wet_basis"));

@@ -12,10 +12,7 @@ static ty_aggregate_recipe recipe_make(void)
 {
     ty_aggregate_recipe r = ty_aggregate_recipe_default();
     r.element.variants = 2;
-    r.container.shape.radius = r.container.shape.height = 0.018f;
-    r.container.shape.thickness = 0.0015f;
-    r.container.shape.foot_radius = 0.008f;
-    r.container.shape.foot_height = 0.002f;
+    set_bowl(&r.container.shape, 0.018f, 0.018f, 0.0015f, 0.008f, 0.002f);
     r.fill.count = GRAINS;
     r.fill.start = TY_FILL_POUR;
     r.fill.pour.rate = 100.0f;

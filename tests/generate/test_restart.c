@@ -36,11 +36,7 @@ static int group_teardown(void** state)
 static ty_container* bowl_make(void)
 {
     ty_container_def def = ty_container_def_default();
-    def.shape.radius = 0.024f;
-    def.shape.height = 0.021f;
-    def.shape.thickness = 0.0018f;
-    def.shape.foot_radius = 0.010f;
-    def.shape.foot_height = 0.003f;
+    set_bowl(&def.shape, 0.024f, 0.021f, 0.0018f, 0.010f, 0.003f);
     ty_container* bowl;
     ty_error error;
     assert_int_equal(ty_container_create(&def, NULL, &bowl, &error), TY_OK);

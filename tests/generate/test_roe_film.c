@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Roe as a film: shells go with the bodies, yolks rise through the white by buoyancy and drag and stop at the membrane.
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-
+#include "recipe_made.h"
 #include <math.h>
 #include <string.h>
 #include <tsuya/generate/aggregate_recipe.h>
@@ -49,11 +44,7 @@ static ty_aggregate_recipe spoonful(int eggs, int frames, float fps)
     r.element.variation = 0.0f;
     r.element.roe.lean = 0.0f;
     r.element.roe.press = 0.0f;
-    r.container.shape.radius = 0.0205f;
-    r.container.shape.height = 0.0125f;
-    r.container.shape.thickness = 0.0016f;
-    r.container.shape.foot_radius = 0.008f;
-    r.container.shape.foot_height = 0.0006f;
+    set_bowl(&r.container.shape, 0.0205f, 0.0125f, 0.0016f, 0.008f, 0.0006f);
     r.fill.count = eggs;
     r.settle.friction = 1.0f;
     r.settle.rolling = 0.1f;

@@ -13,11 +13,7 @@ static ty_aggregate_recipe spoonful(void)
 {
     ty_aggregate_recipe r = ty_aggregate_recipe_default();
     r.element.kind = TY_ELEMENT_ROE;
-    r.container.shape.radius = 0.0205f;
-    r.container.shape.height = 0.0125f;
-    r.container.shape.thickness = 0.0016f;
-    r.container.shape.foot_radius = 0.008f;
-    r.container.shape.foot_height = 0.0006f;
+    set_bowl(&r.container.shape, 0.0205f, 0.0125f, 0.0016f, 0.008f, 0.0006f);
     r.fill.count = EGGS;
     r.fill.sprinkle = 0.4f;
     r.settle.friction = 1.0f;

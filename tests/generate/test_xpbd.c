@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The elastic solver against mechanics: beams, falls, impacts, slopes, momentum, energy, volume, water, any workers.
 #include "base/cmocka_all.h"
+#include "recipe_made.h"
 #include <math.h>
 #include <tsuya/base/hash.h>
 #include <tsuya/generate/aggregate_recipe.h>
@@ -466,11 +467,7 @@ static ty_aggregate* packed(int solver, float strain, int cut, ty_status expecte
 {
     ty_aggregate_recipe recipe = ty_aggregate_recipe_default();
     recipe.element.variants = 2;
-    recipe.container.shape.radius = 0.015f;
-    recipe.container.shape.height = 0.015f;
-    recipe.container.shape.thickness = 0.0015f;
-    recipe.container.shape.foot_radius = 0.007f;
-    recipe.container.shape.foot_height = 0.002f;
+    set_bowl(&recipe.container.shape, 0.015f, 0.015f, 0.0015f, 0.007f, 0.002f);
     recipe.fill.count = 60;
     recipe.settle.solver = solver;
     recipe.settle.rate = 4000.0f;
