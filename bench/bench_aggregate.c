@@ -3,10 +3,10 @@
 // Rice in a box as deep as wide, of mu .5, for each count: seconds of the fill, then microseconds a grain and substep
 // on one thread and on N (interleaved, medians of five rounds), growth against the first count, the peak of memory, and
 // with --rest seconds until at rest and polished, with what is measured then. One count of a million takes minutes.
+#include "cpu_time.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <tsuya/base/log.h>
 #include <tsuya/base/memory.h>
 #include <tsuya/base/rng.h>
@@ -95,13 +95,6 @@ static subject subject_make(int count, int sweeps, ty_workers* workers)
     return s;
 }
 
-static double cpu_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 typedef struct spent
 {
     double wall, cpu; // s a grain and substep
@@ -109,10 +102,10 @@ typedef struct spent
 
 static spent steps_time(ty_pile* pile, int steps, ty_workers* workers)
 {
-    double start = ty_time_now(), cpu = cpu_now(), each = 1.0 / steps / ty_pile_count(pile);
+    double start = ty_time_now(), cpu = cpu_seconds(), each = 1.0 / steps / ty_pile_count(pile);
     for (int i = 0; i < steps; i++)
         ty_pile_step(pile, workers);
-    return (spent){each * (ty_time_now() - start), each * (cpu_now() - cpu)};
+    return (spent){each * (ty_time_now() - start), each * (cpu_seconds() - cpu)};
 }
 
 static int ascending(const void* a, const void* b)

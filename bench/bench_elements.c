@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Elements of every kind: triangles, balls, how far both are apart, and the CPU time that one takes. bench_elements
 // [VARIANTS]: means over so many (8).
+#include "cpu_time.h"
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 #include <tsuya/generate/element.h>
-
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void measure(const char* name, const ty_element_def* def, int variants)
 {
     static ty_element e;
-    double triangles = 0.0, worst = 0.0, start = seconds();
+    double triangles = 0.0, worst = 0.0, start = cpu_seconds();
     int least = TY_ELEMENT_MAX_BALLS, most = 0;
     for (int v = 0; v < variants; v++)
     {
@@ -33,7 +26,7 @@ static void measure(const char* name, const ty_element_def* def, int variants)
         ty_element_term(&e);
     }
     printf("%-22s %9.0f %5d-%-3d %7.2f %9.0f\n", name, triangles, least, most, 100.0 * worst,
-           1e3 * (seconds() - start) / variants);
+           1e3 * (cpu_seconds() - start) / variants);
 }
 
 int main(int argc, char** argv)

@@ -2,11 +2,11 @@
 // Heaps of many grains: bench_scale FOLDER COUNT [SAMPLES]. Writes an aggregate of one 4,096-triangle grain, turned at
 // random on a jittered lattice, loads it as a scene and renders it on one thread. Prints the seconds to load and build,
 // the resident bytes a grain above those of a heap of one grain, the peak, and the samples a second.
+#include "cpu_time.h"
 #include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <tsuya/base/log.h>
 #include <tsuya/base/memory.h>
 #include <tsuya/base/rng.h>
@@ -14,13 +14,6 @@
 #include <tsuya/renderer/render.h>
 
 #define SPACING 2.76e-3f // m: .6 of the volume are grains
-
-static double cpu_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void die(const char* what)
 {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loading and rendering as the command line does.
 #include "picture.h"
+#include "cpu_time.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 static void leave(const ty_error* error)
 {
@@ -37,13 +37,6 @@ static ty_scene* load(const picture_def* def)
     if (status != TY_OK)
         leave(&errors.items[0]);
     return scene;
-}
-
-static double cpu_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 ty_exr* picture_render(const picture_def* def, double* seconds)
