@@ -102,20 +102,32 @@ ty_status ty_gray_scott_create(const ty_gray_scott_def* def, ty_gray_scott** out
     ty_gray_scott* field = TY_ALLOC(ty_gray_scott, 1);
     field->def = *def;
     field->rates = rates_make(def);
-    field->stride = ((size_t)def->width + 3 * GS_MARGIN - 1) / GS_MARGIN * GS_MARGIN;
+    field->stride = stream_stride(def->width);
+    field->run_stride = field->stride / STREAM_GROUP;
     size_t size = field->stride * (size_t)def->height;
     field->memory = TY_TRY_ALLOC(float, 4 * size);
     field->marks = TY_TRY_ALLOC(uint8_t, size + 2 * field->stride);
-    if (!field->memory || !field->marks)
+    field->runs = TY_TRY_ALLOC(uint16_t, field->run_stride * (size_t)def->height);
+    if (!field->memory || !field->marks || !field->runs)
     {
         ty_gray_scott_destroy(field);
         return ty_error_set(error, TY_NO_MEMORY, "no memory for %d x %d cells", def->width, def->height);
     }
-    field->front = (gs_planes){field->memory, field->memory + size};
-    field->back = (gs_planes){field->memory + 2 * size, field->memory + 3 * size};
+    field->stream = (stream){
+        .width = def->width,
+        .height = def->height,
+        .wrap_x = def->wrap_x,
+        .wrap_y = def->wrap_y,
+        .plane_count = 2,
+        .stride = field->stride,
+        .front = {field->memory, field->memory + size},
+        .back = {field->memory + 2 * size, field->memory + 3 * size},
+        .row = gs_row_choose(TY_GRAY_SCOTT_BEST),
+        .context = field,
+    };
     for (int y = 0; y < def->height; y++)
         for (int x = 0; x < def->width; x++)
-            field->front.u[gs_cell(field, y) + (size_t)x] = 1.0f;
+            ty_gray_scott_u(field, y)[x] = 1.0f;
     *out = field;
     return TY_OK;
 }
@@ -124,7 +136,9 @@ void ty_gray_scott_destroy(ty_gray_scott* field)
 {
     if (!field)
         return;
+    stream_release(&field->stream);
     ty_free(field->memory);
+    ty_free(field->runs);
     ty_free(field->feed);
     ty_free(field->kill);
     ty_free(field->marks);
@@ -133,16 +147,17 @@ void ty_gray_scott_destroy(ty_gray_scott* field)
 
 float* ty_gray_scott_u(ty_gray_scott* field, int y)
 {
-    return field->front.u + gs_cell(field, y);
+    return field->stream.front[0] + gs_cell(field, y);
 }
 
 float* ty_gray_scott_v(ty_gray_scott* field, int y)
 {
-    return field->front.v + gs_cell(field, y);
+    return field->stream.front[1] + gs_cell(field, y);
 }
 
 uint8_t* ty_gray_scott_marks(ty_gray_scott* field, int y)
 {
+    field->runs_valid = false;
     return field->marks + gs_cell(field, y + 1);
 }
 
@@ -174,6 +189,7 @@ ty_status ty_gray_scott_vary(ty_gray_scott* field, const float* feed, const floa
     ty_free(field->kill);
     field->feed = new_feed;
     field->kill = new_kill;
+    field->runs_valid = false;
     return TY_OK;
 }
 
@@ -195,10 +211,10 @@ void ty_gray_scott_drop(ty_gray_scott* field, float x, float y, float radius, ty
         for (int i = cx - reach; i <= cx + reach; i++)
         {
             float u = 0.5f * ty_rng_range(rng, 0.98f, 1.02f), v = 0.25f * ty_rng_range(rng, 0.98f, 1.02f);
-            float* at = find_cell(field, field->front.u, i, j);
+            float* at = find_cell(field, field->stream.front[0], i, j);
             if (!at || ty_sqr((float)i - x) + ty_sqr((float)j - y) >= radius * radius)
                 continue;
             *at = u;
-            *find_cell(field, field->front.v, i, j) = v;
+            *find_cell(field, field->stream.front[1], i, j) = v;
         }
 }

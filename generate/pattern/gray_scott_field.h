@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a Gray–Scott field is made of, for the files that step it.
 #pragma once
+#include "stream.h"
 #include <tsuya/generate/gray_scott.h>
 
+// What the groups of STREAM_GROUP cells of a row are: one mark 0..15 without a barrier near, or one of these. With how
+// many groups of that kind follow, the group itself included: kind + GS_RUN_LENGTH count.
 enum
 {
-    GS_MARGIN = 16 // cells left and right of every row: at least one is a copy
+    GS_RUN_MIXED = TY_GRAY_SCOTT_MARKS, // marks, no barriers near
+    GS_RUN_BARRIERS,
+    GS_RUN_VARIED, // rates have planes
+    GS_RUN_LENGTH = 32,
+    GS_RUN_SHORT = 6,  // groups: fewer of a mark are not worth a run of their own
+    GS_RUN_MOST = 2047 // groups
 };
-
-typedef struct gs_planes
-{
-    float *u, *v;
-} gs_planes;
 
 // Per step, by mark: u' = keep_u u + edge_u (up + left + right + down) + corner_u (the others) + feed - u v^2 dt.
 typedef struct gs_rates
@@ -27,14 +30,25 @@ struct ty_gray_scott
 {
     ty_gray_scott_def def;
     gs_rates rates;
-    size_t stride;         // of a row, cells
-    gs_planes front, back; // [height][stride], cell (0, 0) at GS_MARGIN
-    float *feed, *kill;    // the same layout, times dt; NULL without
-    uint8_t* marks;        // [height + 2][stride]: a row above and below
+    size_t stride;      // of a row, cells; cell (0, 0) at STREAM_MARGIN
+    stream stream;      // planes u and v
+    float *feed, *kill; // [height][stride], times dt; NULL without
+    uint8_t* marks;     // [height + 2][stride]: a row above and below
+    uint16_t* runs;     // [height][run_stride]
+    size_t run_stride;  // groups
+    bool runs_valid;    // since marks or planes were touched
     float* memory;
 };
 
 static inline size_t gs_cell(const ty_gray_scott* field, int y)
 {
-    return (size_t)y * field->stride + GS_MARGIN;
+    return (size_t)y * field->stride + STREAM_MARGIN;
 }
+
+stream_row_fn gs_row_portable, gs_row_avx2, gs_row_avx512;
+
+// Marks beyond the edges and the runs of every row.
+void gs_runs_make(ty_gray_scott* field, ty_workers* workers);
+
+// The fastest that this CPU has; NULL for a path that it has not.
+stream_row_fn* gs_row_choose(ty_gray_scott_path path);

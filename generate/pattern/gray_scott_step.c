@@ -1,119 +1,120 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gray–Scott in time, a row after the other: one operation order, no FMA.
+// Gray–Scott in time: which kernel, and what it has to look at in each row.
 #include "gray_scott_field.h"
 #include <string.h>
 
-enum
+stream_row_fn* gs_row_choose(ty_gray_scott_path path)
 {
-    PIECE_CELLS = 32768 // of a range: less is not worth waking a thread
-};
-
-// Rows beyond the edge are those of the far side, or copies of the edge.
-static int row_near(const ty_gray_scott* field, int y)
-{
-    int h = field->def.height;
-    if (field->def.wrap_y)
-        return y < 0 ? y + h : y >= h ? y - h : y;
-    return y < 0 ? 0 : y >= h ? h - 1 : y;
+#if defined(__x86_64__)
+    bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
+                __builtin_cpu_supports("avx512cd");
+    if (wide && (path == TY_GRAY_SCOTT_BEST || path == TY_GRAY_SCOTT_AVX512))
+        return gs_row_avx512;
+    if (__builtin_cpu_supports("avx2") && (path == TY_GRAY_SCOTT_BEST || path == TY_GRAY_SCOTT_AVX2))
+        return gs_row_avx2;
+#endif
+    return path == TY_GRAY_SCOTT_BEST || path == TY_GRAY_SCOTT_PORTABLE ? gs_row_portable : NULL;
 }
 
-static void edges_copy(const ty_gray_scott* field, float* row)
+bool ty_gray_scott_tune(ty_gray_scott* field, ty_gray_scott_tuning tuning)
 {
-    int w = field->def.width;
-    row[-1] = row[field->def.wrap_x ? w - 1 : 0];
-    row[w] = row[field->def.wrap_x ? 0 : w - 1];
+    stream_row_fn* row = gs_row_choose(tuning.path);
+    if (!row)
+        return false;
+    field->stream.row = row;
+    field->stream.depth = tuning.depth;
+    field->stream.strip = tuning.strip;
+    field->stream.bands = tuning.bands;
+    return true;
 }
 
-static void edges_fill(ty_gray_scott* field)
+// Beyond the edges as the cells are: of the far side, or copies of the edge.
+static void marks_around(ty_gray_scott* field)
 {
     int w = field->def.width, h = field->def.height;
     for (int y = 0; y < h; y++)
     {
-        edges_copy(field, field->front.u + gs_cell(field, y));
-        edges_copy(field, field->front.v + gs_cell(field, y));
-        uint8_t* marks = ty_gray_scott_marks(field, y);
+        uint8_t* marks = field->marks + gs_cell(field, y + 1);
         marks[-1] = marks[field->def.wrap_x ? w - 1 : 0];
         marks[w] = marks[field->def.wrap_x ? 0 : w - 1];
     }
-    for (int y = -1; y <= h; y += h + 1)
-        memcpy(ty_gray_scott_marks(field, y) - 1, ty_gray_scott_marks(field, row_near(field, y)) - 1, (size_t)w + 2);
+    const uint8_t *first = field->marks + field->stride, *last = field->marks + (size_t)h * field->stride;
+    memcpy(field->marks, field->def.wrap_y ? last : first, field->stride);
+    memcpy(field->marks + (size_t)(h + 1) * field->stride, field->def.wrap_y ? first : last, field->stride);
 }
 
-typedef struct around
+static uint64_t eight(const uint8_t* marks)
 {
-    const float *up, *at, *down;
-    const uint8_t *marks_up, *marks_at, *marks_down;
-} around;
-
-static bool closed(uint8_t mark)
-{
-    return (mark & TY_GRAY_SCOTT_BARRIER) != 0;
+    uint64_t a;
+    memcpy(&a, marks, sizeof a);
+    return a;
 }
 
-// What is behind a barrier is as the cell itself. A corner is closed too where both of its edges are.
-static void sums(const around* a, int x, float* edges, float* corners)
+// Of a group; what lies beyond the row's end counts as well, which may make it more careful than it need be.
+static unsigned group_kind(const ty_gray_scott* field, const uint8_t* marks)
 {
-    float c = a->at[x];
-    bool up = closed(a->marks_up[x]), down = closed(a->marks_down[x]);
-    bool left = closed(a->marks_at[x - 1]), right = closed(a->marks_at[x + 1]);
-    *edges = ((up ? c : a->up[x]) + (left ? c : a->at[x - 1])) + ((right ? c : a->at[x + 1]) + (down ? c : a->down[x]));
-    float up_left = closed(a->marks_up[x - 1]) || (up && left) ? c : a->up[x - 1];
-    float up_right = closed(a->marks_up[x + 1]) || (up && right) ? c : a->up[x + 1];
-    float down_left = closed(a->marks_down[x - 1]) || (down && left) ? c : a->down[x - 1];
-    float down_right = closed(a->marks_down[x + 1]) || (down && right) ? c : a->down[x + 1];
-    *corners = (up_left + down_left) + (up_right + down_right);
-}
-
-static void row_step(const ty_gray_scott* field, int y)
-{
-    const gs_rates* r = &field->rates;
-    size_t at = gs_cell(field, y), up = gs_cell(field, row_near(field, y - 1)),
-           down = gs_cell(field, row_near(field, y + 1));
-    const uint8_t* marks = field->marks + gs_cell(field, y + 1);
-    const around u = {field->front.u + up,  field->front.u + at, field->front.u + down, marks - field->stride, marks,
-                      marks + field->stride};
-    const around v = {field->front.v + up,  field->front.v + at, field->front.v + down, marks - field->stride, marks,
-                      marks + field->stride};
-    float *out_u = field->back.u + at, *out_v = field->back.v + at;
-    for (int x = 0; x < field->def.width; x++)
+    uint64_t near = 0;
+    for (ptrdiff_t row = -1; row <= 1; row++)
     {
-        int mark = marks[x] % TY_GRAY_SCOTT_MARKS;
-        float a = u.at[x], b = v.at[x], edges_u, corners_u, edges_v, corners_v;
-        float feed = r->feed[mark] + (field->feed ? field->feed[at + (size_t)x] : 0.0f);
-        float kill = r->kill[mark] + (field->kill ? field->kill[at + (size_t)x] : 0.0f);
-        sums(&u, x, &edges_u, &corners_u);
-        sums(&v, x, &edges_v, &corners_v);
-        float near_u = r->edge_u * edges_u, near_v = r->edge_v * edges_v;
-        if (field->def.stencil == 9)
-        {
-            near_u += r->corner_u * corners_u;
-            near_v += r->corner_v * corners_v;
-        }
-        float reaction = r->time_step * (a * b * b);
-        out_u[x] = closed(marks[x]) ? a : (((r->base_u - feed) * a + near_u) + feed) - reaction;
-        out_v[x] = closed(marks[x]) ? b : ((r->base_v - (feed + kill)) * b + near_v) + reaction;
+        const uint8_t* at = marks + row * (ptrdiff_t)field->stride;
+        near |= eight(at - 1) | eight(at + 7) | eight(at + STREAM_GROUP + 1 - 8);
     }
-    edges_copy(field, out_u);
-    edges_copy(field, out_v);
+    if (near & 0x8080808080808080u)
+        return GS_RUN_BARRIERS;
+    uint64_t all = marks[0] * 0x0101010101010101u;
+    return (eight(marks) ^ all) | (eight(marks + 8) ^ all) ? GS_RUN_MIXED : marks[0] % TY_GRAY_SCOTT_MARKS;
 }
 
-static void rows_step(void* context, int64_t begin, int64_t end, int worker)
+// Kinds become kinds and lengths, from the end on. Short runs of a mark are mixed, so that they join others.
+static void runs_join(uint16_t* runs, int groups)
 {
+    for (int g = 0, stop; g < groups; g = stop)
+    {
+        for (stop = g + 1; stop < groups && runs[stop] == runs[g];)
+            stop++;
+        if (runs[g] < TY_GRAY_SCOTT_MARKS && stop - g < GS_RUN_SHORT && groups > GS_RUN_SHORT)
+            for (int i = g; i < stop; i++)
+                runs[i] = GS_RUN_MIXED;
+    }
+    for (int g = groups - 1, length = 0; g >= 0; g--)
+    {
+        bool joins = g + 1 < groups && runs[g + 1] % GS_RUN_LENGTH == runs[g] && length < GS_RUN_MOST;
+        length = joins ? length + 1 : 1;
+        runs[g] = (uint16_t)(runs[g] + GS_RUN_LENGTH * length);
+    }
+}
+
+static void rows_make(void* context, int64_t begin, int64_t end, int worker)
+{
+    const ty_gray_scott* field = context;
+    int groups = (field->def.width + STREAM_GROUP - 1) / STREAM_GROUP;
+    bool varied = field->feed || field->kill;
     (void)worker;
     for (int y = (int)begin; y < (int)end; y++)
-        row_step(context, y);
+    {
+        const uint8_t* marks = field->marks + gs_cell(field, y + 1);
+        uint16_t* runs = field->runs + (size_t)y * field->run_stride;
+        for (int g = 0; g < groups; g++)
+            runs[g] = (uint16_t)(varied ? GS_RUN_VARIED : group_kind(field, marks + g * STREAM_GROUP));
+        runs_join(runs, groups);
+    }
+}
+
+void gs_runs_make(ty_gray_scott* field, ty_workers* workers)
+{
+    enum
+    {
+        PIECE = 64 // rows
+    };
+    marks_around(field);
+    ty_parallel_all(workers, field->def.height, PIECE, rows_make, field);
+    field->runs_valid = true;
 }
 
 void ty_gray_scott_step(ty_gray_scott* field, int step_count, ty_workers* workers)
 {
-    edges_fill(field); // cells may have been set from outside
-    int64_t rows = PIECE_CELLS / field->def.width + 1;
-    for (int i = 0; i < step_count; i++)
-    {
-        if (!ty_parallel_for(workers, field->def.height, rows, rows_step, field))
-            return;
-        gs_planes done = field->back;
-        field->back = field->front;
-        field->front = done;
-    }
+    if (!field->runs_valid)
+        gs_runs_make(field, workers);
+    (void)!stream_steps(&field->stream, step_count, workers); // who has cancelled knows it
 }

@@ -26,7 +26,7 @@ static ty_gray_scott* grown(float feed, float kill, int steps)
     def.width = def.height = N;
     def.rates[0] = (ty_gray_scott_rates){feed, kill};
     ty_gray_scott* field = make(&def);
-    ty_rng rng = ty_rng_make((ty_seed){1}, 0, 0);
+    ty_rng rng = ty_rng_make((ty_seed){2}, 0, 0);
     ty_gray_scott_drop(field, 64.0f, 64.0f, 11.0f, &rng);
     ty_gray_scott_step(field, steps, NULL);
     return field;
@@ -114,7 +114,7 @@ static void rates_give_their_patterns(void** state)
     ty_gray_scott_destroy(field);
     field = grown(0.0265f, 0.0605f, 20000); // spots apart from each other
     assert_in_range(regions(field), 70, 90);
-    assert_float_equal(cover(field), 0.28f, 0.03f);
+    assert_float_equal(cover(field), 0.287f, 0.015f);
     ty_gray_scott_destroy(field);
     field = grown(0.067f, 0.062f, 20000); // stripes, joined to one labyrinth
     assert_int_equal(regions(field), 1);

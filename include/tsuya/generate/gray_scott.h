@@ -60,3 +60,23 @@ TY_CHECKED ty_status ty_gray_scott_vary(ty_gray_scott* field, const float* feed,
 // Forward Euler. The same bits for any worker count. Cannot fail; when cancelled the values are of no use.
 // Flush-to-zero is set while it steps and put back. Separate fields may step on separate threads.
 void ty_gray_scott_step(ty_gray_scott* field, int step_count, ty_workers* workers);
+
+// How it is computed: the same bits for all. For measurements and tests.
+typedef enum ty_gray_scott_path
+{
+    TY_GRAY_SCOTT_BEST, // of this CPU
+    TY_GRAY_SCOTT_PORTABLE,
+    TY_GRAY_SCOTT_AVX2,
+    TY_GRAY_SCOTT_AVX512,
+} ty_gray_scott_path;
+
+typedef struct ty_gray_scott_tuning
+{
+    ty_gray_scott_path path;
+    int depth; // steps that a pass over memory makes, 1..64; 0: chosen, as the others
+    int strip; // cells across that it makes at once
+    int bands; // parts of the height
+} ty_gray_scott_tuning;
+
+// False where this CPU has no such path; nothing is changed then.
+bool ty_gray_scott_tune(ty_gray_scott* field, ty_gray_scott_tuning tuning);
