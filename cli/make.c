@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// `tsuya pack`, `tsuya fill` and `tsuya roots`: a recipe to a file, or to files by number.
+// `tsuya pack`, `tsuya fill`, `tsuya filter` and `tsuya roots`: a recipe to a file, or to files by number.
 #include "cli.h"
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <tsuya/base/file.h>
 #include <tsuya/base/log.h>
@@ -16,10 +17,12 @@ typedef struct product
     bool is_sequence, is_file;     // both: the output tells
 } product;
 
-static const char *const fill_extensions[] = {"exr", NULL}, *const mesh_extensions[] = {"ply", NULL};
+static const char *const fill_extensions[] = {"exr", NULL}, *const filter_extensions[] = {"exr", "png", NULL},
+                         *const mesh_extensions[] = {"ply", NULL};
 static const product products[] = {
     {"pack", "aggregate", ty_aggregate_endings, true, true},
     {"fill", "fill", fill_extensions, true, false},
+    {"filter", "filter", filter_extensions, true, true},
     {"roots", "roots", mesh_extensions, false, true},
 };
 
@@ -67,6 +70,23 @@ static ty_status check_output(const ty_arguments* arguments, const product* p, c
     return status;
 }
 
+// An image after the recipe: the recipe's own, found from where the command is typed.
+static ty_status take_image(const ty_arguments* arguments, ty_scene_arguments* out)
+{
+    static char text[TY_PATH_MAX + 16];
+    char path[TY_PATH_MAX], folder[TY_PATH_MAX], whole[PATH_MAX];
+    if (arguments->positional_count < 2)
+        return TY_OK;
+    ty_path_folder(arguments->positional[1], folder);
+    const char* name = strrchr(arguments->positional[1], '/');
+    ty_path_join(realpath(folder, whole) ? whole : folder, name ? name + 1 : arguments->positional[1], path);
+    if (strpbrk(path, "'\n"))
+        return ty_usage(arguments->command, "the name of the image has a character that YAML needs: %s", path);
+    snprintf(text, sizeof text, "image='%s'", path);
+    out->sets[out->options.set_count++] = text;
+    return TY_OK;
+}
+
 static ty_status run(const ty_arguments* arguments)
 {
     static ty_scene_arguments scene_arguments;
@@ -80,6 +100,8 @@ static ty_status run(const ty_arguments* arguments)
         status = check_output(arguments, alone ? &one : p, output);
     if (status == TY_OK)
         status = ty_scene_arguments_read(arguments, &scene_arguments);
+    if (status == TY_OK)
+        status = take_image(arguments, &scene_arguments);
     if (status != TY_OK)
         return status;
     scene_arguments.options.resume = ty_argument_text(arguments, "resume", NULL);
@@ -109,6 +131,7 @@ static const ty_option pack_options[] = {
     TY_SCENE_OPTIONS,
 };
 OPTIONS(fill_options, "OUT.####.exr", "the frames to write, from 1");
+OPTIONS(filter_options, "OUT.png", "the picture to write, .png or .exr; with #### the frames, from 1");
 OPTIONS(roots_options, "OUT.ply", "the mesh to write");
 
 const ty_command ty_command_pack = {
@@ -132,6 +155,18 @@ const ty_command ty_command_fill = {
     1,
     fill_options,
     TY_PARAM_COUNT(fill_options),
+    run,
+};
+
+const ty_command ty_command_filter = {
+    "filter",
+    "RECIPE [IMAGE] -o OUT.png",
+    "redraw a picture by spots or stripes that keep its tones",
+    "tsuya filter scenes/filter_seed/tone.yaml docs/images/roe.jpg -o out/roe.png --set size=0.7",
+    1,
+    2,
+    filter_options,
+    TY_PARAM_COUNT(filter_options),
     run,
 };
 

@@ -200,6 +200,9 @@ TY_CHECKED ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, c
                                      ty_error* error);
 TY_CHECKED ty_status ty_recipe_key(const ty_recipe* recipe, ty_files* files, char key[33], ty_error* error);
 
+// frame_write.c: a frame of a generator, Y or R, G, B in ACEScg, by the ending: .exr, or .png as sRGB shows it.
+TY_CHECKED ty_status ty_frame_write(const char* path, const ty_exr* frame, const ty_color* color, ty_error* error);
+
 // asset_cache.c: what a recipe makes, made at most once per cache folder, into the asset's aggregate, mesh or frames.
 TY_CHECKED ty_status ty_asset_cache_get(ty_loader* loader, ty_asset* asset, ty_error* error);
 

@@ -148,6 +148,7 @@ ty_status ty_recipe_key(const ty_recipe* recipe, ty_files* files, char key[33], 
 typedef struct frame_writer
 {
     const char *pattern, *text, *key;
+    const ty_color* color; // NULL: frames are EXR files
 } frame_writer;
 
 static ty_status write_frame(void* context, int frame, ty_exr* image, ty_error* error)
@@ -157,7 +158,7 @@ static ty_status write_frame(void* context, int frame, ty_exr* image, ty_error* 
     ty_exr_add_string(image, "tsuya/recipe", writer->text);
     ty_exr_add_string(image, "tsuya/hash", writer->key);
     ty_path_frame(writer->pattern, frame, path);
-    return ty_exr_write(path, image, error);
+    return ty_frame_write(path, image, writer->color, error);
 }
 
 static void sign(char** recipe, char** hash, char* text, const char* key)
@@ -178,11 +179,11 @@ static ty_status write_film(void* context, int frame, ty_aggregate* aggregate, t
 }
 
 // partial: an aggregate that was interrupted and holds its state is written as well.
-static ty_status write_made(const ty_recipe* recipe, const char* key, const char* output, const ty_bytes* state,
-                            bool partial, ty_workers* workers, ty_error* error)
+static ty_status write_made(const ty_recipe* recipe, const char* key, const char* output, const ty_color* color,
+                            const ty_bytes* state, bool partial, ty_workers* workers, ty_error* error)
 {
     char* text = ty_recipe_text(recipe);
-    frame_writer writer = {output, text, key};
+    frame_writer writer = {output, text, key, color};
     ty_made made = {.frames = {write_frame, &writer}, .state = state};
     if (recipe->generator->product == TY_PRODUCT_AGGREGATE && ty_path_is_sequence(output))
         made.film = (ty_aggregate_sink){write_film, &writer};
@@ -212,7 +213,7 @@ static ty_status write_made(const ty_recipe* recipe, const char* key, const char
 ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* output, ty_workers* workers,
                           ty_error* error)
 {
-    return write_made(recipe, key, output, NULL, false, workers, error);
+    return write_made(recipe, key, output, NULL, NULL, false, workers, error);
 }
 
 // The recipe file as the root of a loader, read; false after reports.
@@ -249,12 +250,17 @@ static ty_status make_and_write(ty_loader* loader, const ty_recipe* recipe, int 
         return status;
     if (element > 0)
         return write_element(recipe, element, key, output, error);
+    int frames = recipe->generator->product == TY_PRODUCT_FRAMES ? recipe->generator->frame_count(recipe->def) : 1;
+    if (frames > 1 && !ty_path_is_sequence(output))
+        return ty_error_set(error, TY_USAGE, "%d frames do not go into '%s': it needs #### where their number goes",
+                            frames, output);
     const char* resume = loader->options->resume;
     ty_bytes state = {0};
     if (resume)
         status = ty_aggregate_read_state(resume, &state, error);
     if (status == TY_OK)
-        status = write_made(recipe, key, output, resume ? &state : NULL, true, loader->options->workers, error);
+        status = write_made(recipe, key, output, loader->scene->color, resume ? &state : NULL, true,
+                            loader->options->workers, error);
     ty_bytes_term(&state);
     return status;
 }

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a frame of a Turing filter shows: U against a threshold, calibrated by the tones that the cells were to have.
+#include "filter_run.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <tsuya/base/memory.h>
+
+enum
+{
+    TONES = 32,
+    LEVELS = 512,
+    ENOUGH = 4096 // cells that tell a threshold
+};
+
+// --- thresholds ---
+
+typedef struct calibration
+{
+    float low, high;    // of U where the pattern lives
+    float above[TONES]; // the threshold at the middle of each tone
+    uint32_t cells[TONES][LEVELS];
+} calibration;
+
+static bool lives(const ty_filter_run* run, size_t i)
+{
+    return !run->alive || run->alive[i] >= 0.5f;
+}
+
+static int slot(float x, int count)
+{
+    int i = (int)(x * (float)count);
+    return i < 0 ? 0 : i >= count ? count - 1 : i;
+}
+
+static void cells_count(const ty_filter_run* run, int field, const float* u, calibration* c)
+{
+    size_t size = (size_t)run->width * (size_t)run->height;
+    c->low = INFINITY;
+    c->high = -INFINITY;
+    for (size_t i = 0; i < size; i++)
+        if (lives(run, i))
+        {
+            c->low = ty_min(c->low, u[i]);
+            c->high = ty_max(c->high, u[i]);
+        }
+    float step = c->high > c->low ? 1.0f / (c->high - c->low) : 0.0f;
+    for (size_t i = 0; i < size; i++)
+        if (lives(run, i))
+            c->cells[slot(run->picture.tone[field][i], TONES)][slot((u[i] - c->low) * step, LEVELS)]++;
+}
+
+// Counts at a level of the tones up to `reach` from this one, the nearer the more.
+static uint64_t pooled(const calibration* c, int tone, int reach, int level)
+{
+    uint64_t sum = 0;
+    for (int t = tone - reach; t <= tone + reach; t++)
+        if (t >= 0 && t < TONES)
+            sum += (uint64_t)(reach + 1 - abs(t - tone)) * c->cells[t][level];
+    return sum;
+}
+
+static uint64_t pooled_all(const calibration* c, int tone, int reach)
+{
+    uint64_t sum = 0;
+    for (int level = 0; level < LEVELS; level++)
+        sum += pooled(c, tone, reach, level);
+    return sum;
+}
+
+// The U that the tone's share of cells lies above.
+static float quantile(const calibration* c, int tone)
+{
+    int reach = 0;
+    uint64_t all = pooled_all(c, tone, reach);
+    while (all < (uint64_t)ENOUGH * (uint64_t)(reach + 1) && reach < TONES)
+        all = pooled_all(c, tone, ++reach);
+    double share = ((double)tone + 0.5) / TONES, below = (1.0 - share) * (double)all, sum = 0.0;
+    for (int level = 0; level < LEVELS; level++)
+    {
+        double here = (double)pooled(c, tone, reach, level);
+        if (sum + here >= below && here > 0.0)
+            return ty_lerp(c->low, c->high, (float)((level + (below - sum) / here) / LEVELS));
+        sum += here;
+    }
+    return c->high;
+}
+
+static float threshold_at(const calibration* c, float tone, float softness)
+{
+    float at = tone * TONES - 0.5f, first = c->high + softness, last = c->low - softness;
+    int i = (int)floorf(at);
+    float f = at - (float)i;
+    if (i < 0)
+        return ty_lerp(first, c->above[0], 2.0f * f - 1.0f);
+    if (i >= TONES - 1)
+        return ty_lerp(c->above[TONES - 1], last, ty_min(2.0f * f, 1.0f));
+    return ty_lerp(c->above[i], c->above[i + 1], f);
+}
+
+// U over the threshold of its cell, in place.
+static ty_status over_threshold(const ty_filter_run* run, int field, float* u, ty_error* error)
+{
+    const ty_filter_recipe* r = run->recipe;
+    size_t size = (size_t)run->width * (size_t)run->height;
+    calibration* c = NULL;
+    if (r->mode == TY_FILTER_TONE && r->tone.calibrated)
+    {
+        c = TY_TRY_ALLOC(calibration, 1);
+        if (!c)
+            return ty_error_set(error, TY_NO_MEMORY, "no memory for a frame");
+        cells_count(run, field, u, c);
+        for (int t = 0; t < TONES; t++)
+            c->above[t] = quantile(c, t);
+    }
+    for (size_t i = 0; i < size; i++)
+    {
+        float threshold = c ? threshold_at(c, run->picture.tone[field][i], r->softness) : r->threshold;
+        u[i] -= run->alive ? ty_lerp(r->threshold, threshold, run->alive[i]) : threshold;
+    }
+    ty_free(c);
+    return TY_OK;
+}
+
+// --- pixels ---
+
+typedef struct painting
+{
+    const ty_filter_run* run;
+    const float* over[TY_FILTER_FIELDS]; // U over its threshold
+    float* pixels;                       // three a pixel: linear Rec. 709, or of grey alone ACEScg
+} painting;
+
+// The cubic through the four neighbours (Catmull & Rom 1974) at t past the second.
+static void cubic_weights(float t, float w[4])
+{
+    w[0] = 0.5f * t * (t * (2.0f - t) - 1.0f);
+    w[1] = 0.5f * (t * t * (3.0f * t - 5.0f) + 2.0f);
+    w[2] = 0.5f * t * (t * (4.0f - 3.0f * t) + 1.0f);
+    w[3] = 0.5f * t * t * (t - 1.0f);
+}
+
+static int neighbour(const ty_filter_run* run, int i, int n)
+{
+    if (run->recipe->edges == TY_TURING_WRAP)
+        return (i + n) % n;
+    return i < 0 ? 0 : i >= n ? n - 1 : i;
+}
+
+// The field's line through the middle of row y of the frame.
+static void line_blend(const ty_filter_run* run, const float* plane, int y, float* line)
+{
+    float at = ((float)y + 0.5f) / (float)run->recipe->scale - 0.5f, whole = floorf(at), weight[4];
+    cubic_weights(at - whole, weight);
+    memset(line, 0, (size_t)run->width * sizeof *line);
+    for (int k = 0; k < 4; k++)
+    {
+        const float* row = plane + (size_t)neighbour(run, (int)whole - 1 + k, run->height) * (size_t)run->width;
+        for (int x = 0; x < run->width; x++)
+            line[x] += weight[k] * row[x];
+    }
+}
+
+// 0 = low, 1 = high.
+static float line_level(const ty_filter_run* run, const float* line, int x)
+{
+    const ty_filter_recipe* r = run->recipe;
+    float at = ((float)x + 0.5f) / (float)r->scale - 0.5f, whole = floorf(at), weight[4], over = 0.0f;
+    cubic_weights(at - whole, weight);
+    for (int k = 0; k < 4; k++)
+        over += weight[k] * line[neighbour(run, (int)whole - 1 + k, run->width)];
+    return ty_smoothstep(ty_clamp(0.5f + 0.5f * over * (float)r->scale / r->softness, 0.0f, 1.0f));
+}
+
+static void pixel_set(const ty_filter_run* run, const float level[3], size_t cell, float* out)
+{
+    const ty_filter_recipe* r = run->recipe;
+    ty_rgb grey = ty_rgb_lerp(r->low, r->high, level[0]);
+    const float values[3] = {grey.r, grey.g, grey.b};
+    float most = ty_max(run->picture.rgb[0][cell], ty_max(run->picture.rgb[1][cell], run->picture.rgb[2][cell]));
+    for (int c = 0; c < 3; c++)
+        if (r->color == TY_FILTER_GREY)
+            out[c] = values[c];
+        else if (r->color == TY_FILTER_CHANNELS)
+            out[c] = level[c];
+        else // the brightest of its hue, so that what is left out is black
+            out[c] = most > 0.0f ? level[0] * run->picture.rgb[c][cell] / most : level[0];
+}
+
+static void rows_paint(void* context, int64_t begin, int64_t end, int worker)
+{
+    const painting* p = context;
+    const ty_filter_run* run = p->run;
+    (void)worker;
+    int scale = run->recipe->scale, width = run->width * scale;
+    float* lines = TY_ALLOC(float, TY_FILTER_FIELDS * run->width);
+    for (int y = (int)begin; y < (int)end; y++)
+    {
+        for (int f = 0; f < run->field_count; f++)
+            line_blend(run, p->over[f], y, lines + (size_t)f * (size_t)run->width);
+        for (int x = 0; x < width; x++)
+        {
+            float level[TY_FILTER_FIELDS] = {0};
+            for (int f = 0; f < run->field_count; f++)
+                level[f] = line_level(run, lines + (size_t)f * (size_t)run->width, x);
+            size_t cell = (size_t)(y / scale) * (size_t)run->width + (size_t)(x / scale);
+            pixel_set(run, level, cell, p->pixels + 3 * ((size_t)y * (size_t)width + (size_t)x));
+        }
+    }
+    ty_free(lines);
+}
+
+static bool is_grey(const ty_filter_recipe* r)
+{
+    bool low = r->low.r == r->low.g && r->low.g == r->low.b, high = r->high.r == r->high.g && r->high.g == r->high.b;
+    return r->color == TY_FILTER_GREY && low && high;
+}
+
+// --- the frame ---
+
+// U and V of the cells, of each pixel.
+static void fields_add(const ty_filter_run* run, ty_exr* frame)
+{
+    static const char* const names[2][TY_FILTER_FIELDS] = {{"U", "U.G", "U.B"}, {"V", "V.G", "V.B"}};
+    int scale = run->recipe->scale, width = run->width * scale;
+    for (int k = 0; k < 2 * run->field_count; k++)
+    {
+        ty_turing* field = run->fields[k / 2];
+        float* out = ty_exr_add_channel(frame, names[k % 2][k / 2], TY_EXR_FLOAT);
+        for (int y = 0; y < run->height * scale; y++)
+        {
+            const float* row = k % 2 ? ty_turing_v(field, y / scale) : ty_turing_u(field, y / scale);
+            for (int x = 0; x < width; x++)
+                out[(size_t)y * (size_t)width + (size_t)x] = row[x / scale];
+        }
+    }
+}
+
+static ty_exr* frame_pack(const ty_filter_run* run, const float* pixels)
+{
+    static const char* const names[] = {"R", "G", "B"};
+    static const float ap1[8] = TY_ACESCG_CHROMATICITIES;
+    int scale = run->recipe->scale;
+    int window[4] = {0, 0, run->width * scale - 1, run->height * scale - 1};
+    ty_exr* frame = ty_exr_create(window, window);
+    bool grey = is_grey(run->recipe);
+    size_t size = (size_t)(window[2] + 1) * (size_t)(window[3] + 1);
+    for (int c = 0; c < (grey ? 1 : 3); c++)
+    {
+        float* out = ty_exr_add_channel(frame, grey ? "Y" : names[c], TY_EXR_HALF);
+        for (size_t i = 0; i < size; i++)
+            out[i] = pixels[3 * i + (size_t)c];
+    }
+    if (!grey)
+        ty_exr_add_chromaticities(frame, ap1);
+    if (run->recipe->fields)
+        fields_add(run, frame);
+    return frame;
+}
+
+static ty_status paint(painting* p, ty_exr** out, ty_error* error)
+{
+    const ty_filter_run* run = p->run;
+    int scale = run->recipe->scale, width = run->width * scale, height = run->height * scale;
+    ty_status status = TY_OK;
+    if (!ty_parallel_for(run->workers, height, 16, rows_paint, p))
+        return ty_error_set(error, TY_INTERRUPTED, "interrupted while a frame was made");
+    if (run->recipe->color != TY_FILTER_GREY)
+        status = ty_color_convert(run->color, "lin_rec709", "ACEScg", p->pixels, width * height, 3, error);
+    if (status == TY_OK)
+        *out = frame_pack(run, p->pixels);
+    return status;
+}
+
+ty_status ty_filter_frame(const ty_filter_run* run, ty_exr** out, ty_error* error)
+{
+    size_t size = (size_t)run->width * (size_t)run->height, scale = (size_t)run->recipe->scale;
+    float* over = TY_TRY_ALLOC(float, size*(size_t)run->field_count);
+    painting p = {.run = run, .pixels = over ? TY_TRY_ALLOC(float, 3 * size * scale * scale) : NULL};
+    ty_status status =
+        p.pixels ? TY_OK
+                 : ty_error_set(error, TY_NO_MEMORY, "no memory for a frame of %d x %d", run->width, run->height);
+    for (int f = 0; f < run->field_count && status == TY_OK; f++)
+    {
+        float* plane = over + (size_t)f * size;
+        for (int y = 0; y < run->height; y++)
+            memcpy(plane + (size_t)y * (size_t)run->width, ty_turing_u(run->fields[f], y),
+                   (size_t)run->width * sizeof(float));
+        p.over[f] = plane;
+        status = over_threshold(run, f, plane, error);
+    }
+    if (status == TY_OK)
+        status = paint(&p, out, error);
+    ty_free(p.pixels);
+    ty_free(over);
+    return status;
+}

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// One row of one step, compiled once for each set of instructions: plain loops whose operations and their order are
+// the same, so that their bits are.
+#include "turing_state.h"
+#include <math.h>
+
+#define JOIN2(a, b) a##b
+#define JOIN(a, b) JOIN2(a, b)
+
+#if defined(__GNUC__) && !defined(__clang__) && defined(__AVX512F__)
+#define WIDE __attribute__((target("prefer-vector-width=512")))
+#else
+#define WIDE
+#endif
+
+enum
+{
+    SEGMENT = 256 // cells whose weights are at hand at a time
+};
+
+// Left, right, up, down; left up, right up, left down, right down.
+typedef struct weights
+{
+    float u[8][SEGMENT], v[4][SEGMENT];
+} weights;
+
+static inline float clamp(float x, float most)
+{
+    x = x > 0.0f ? x : 0.0f;
+    return x < most ? x : most;
+}
+
+static inline float steep(float slope, float a)
+{
+    return 1.0f / (1.0f + slope * a);
+}
+
+WIDE static void row_plain(const ty_turing_rates* k, const ty_turing_rows* r, int width)
+{
+    const float* restrict u = r->u[1], * restrict uu = r->u[0], * restrict ud = r->u[2], * restrict c = r->constant;
+    const float* restrict v = r->v[1], * restrict vu = r->v[0], * restrict vd = r->v[2];
+    float* restrict out_u = r->out_u, * restrict out_v = r->out_v;
+    const ty_turing_rates q = *k;
+    for (int x = 0; x < width; x++)
+    {
+        float a = u[x], b = v[x];
+        float around_u = (u[x - 1] + u[x + 1]) + (uu[x] + ud[x]);
+        float around_v = (v[x - 1] + v[x + 1]) + (vu[x] + vd[x]);
+        float f = clamp((q.uu * a + q.uv * b) + c[x], q.u_most);
+        float g = clamp((q.vu * a + q.vv * b) + q.v_constant, q.v_most);
+        out_u[x] = (q.centre_u * a + f) + q.spread_u * around_u;
+        out_v[x] = (q.centre_v * b + g) + q.spread_v * around_v;
+    }
+}
+
+// The share of each neighbour that comes through its side.
+WIDE static void weights_open(const ty_turing_rows* r, bool corners, int x0, int n, weights* w)
+{
+    static const int row[8] = {1, 1, 0, 2, 0, 0, 2, 2}, step[8] = {-1, 1, 0, 0, -1, 1, -1, 1};
+    for (int j = 0; j < (corners ? 8 : 4); j++)
+    {
+        float* restrict out = w->u[j];
+        if (!r->inverse)
+        {
+            for (int i = 0; i < n; i++)
+                out[i] = 1.0f;
+            continue;
+        }
+        const float* restrict open = r->open[row[j]] + x0 + step[j], * restrict inverse = r->inverse + x0;
+        for (int i = 0; i < n; i++)
+        {
+            float share = open[i] * inverse[i];
+            out[i] = share < 1.0f ? share : 1.0f;
+        }
+    }
+    for (int j = 0; j < 4; j++)
+        for (int i = 0; i < n; i++)
+            w->v[j][i] = w->u[j][i];
+}
+
+// The tensor a, b; b, c by eight neighbours with no negative weight: a - |b| beside, c - |b| above and below, b or
+// nothing along each diagonal (Weickert 1998, nonnegativity discretisation).
+WIDE static void weights_along(const ty_turing_rows* r, int x0, int n, weights* w)
+{
+    const float* restrict cosine = r->along_cos + x0, * restrict sine = r->along_sin + x0;
+    for (int i = 0; i < n; i++)
+    {
+        float b = sine[i], size = fabsf(b), falling = 0.5f * (size + b), rising = 0.5f * (size - b);
+        float beside = (1.0f + cosine[i]) - size, over = (1.0f - cosine[i]) - size;
+        w->u[0][i] *= beside;
+        w->u[1][i] *= beside;
+        w->u[2][i] *= over;
+        w->u[3][i] *= over;
+        w->u[4][i] *= falling; // rows go down
+        w->u[5][i] *= rising;
+        w->u[6][i] *= rising;
+        w->u[7][i] *= falling;
+    }
+}
+
+WIDE static void weights_limit_faces(const ty_turing_rates* k, const ty_turing_rows* r, int x0, int n, weights* w)
+{
+    static const int row[4] = {1, 1, 0, 2}, step[4] = {-1, 1, 0, 0};
+    const float* restrict u = r->u[1] + x0;
+    for (int j = 0; j < 4; j++)
+    {
+        const float* restrict next = r->u[row[j]] + x0 + step[j];
+        for (int i = 0; i < n; i++)
+        {
+            float g = steep(k->slope, fabsf(next[i] - u[i]));
+            w->u[j][i] *= g;
+            w->v[j][i] *= k->limit == TY_TURING_LIMIT_BOTH ? g : 1.0f;
+        }
+    }
+}
+
+// |grad U| by the differences to the right and down, over open sides alone.
+WIDE static void weights_limit(const ty_turing_rates* k, const ty_turing_rows* r, bool corners, int x0, int n,
+                               weights* w)
+{
+    const float* restrict u = r->u[1] + x0, * restrict down = r->u[2] + x0;
+    float g[SEGMENT];
+    for (int i = 0; i < n; i++)
+    {
+        float a = w->v[1][i] * (u[i + 1] - u[i]), b = w->v[3][i] * (down[i] - u[i]);
+        g[i] = steep(k->slope, sqrtf(a * a + b * b));
+    }
+    for (int j = 0; j < (corners ? 8 : 4); j++)
+        for (int i = 0; i < n; i++)
+            w->u[j][i] *= g[i];
+    for (int j = 0; j < (k->limit == TY_TURING_LIMIT_BOTH ? 4 : 0); j++)
+        for (int i = 0; i < n; i++)
+            w->v[j][i] *= g[i];
+}
+
+WIDE static void corners_add(const ty_turing_rates* k, const ty_turing_rows* r, int x0, int n, const weights* w)
+{
+    const float* restrict u = r->u[1] + x0, * restrict up = r->u[0] + x0, * restrict down = r->u[2] + x0;
+    float* restrict out = r->out_u + x0;
+    for (int i = 0; i < n; i++)
+    {
+        float above = w->u[4][i] * (up[i - 1] - u[i]) + w->u[5][i] * (up[i + 1] - u[i]);
+        float below = w->u[6][i] * (down[i - 1] - u[i]) + w->u[7][i] * (down[i + 1] - u[i]);
+        out[i] += k->spread_u * (above + below);
+    }
+}
+
+WIDE static void weighted_step(const ty_turing_rates* k, const ty_turing_rows* r, int x0, int n, const weights* w)
+{
+    const float* restrict u = r->u[1] + x0, * restrict uu = r->u[0] + x0, * restrict ud = r->u[2] + x0;
+    const float* restrict v = r->v[1] + x0, * restrict vu = r->v[0] + x0, * restrict vd = r->v[2] + x0;
+    const float* restrict c = r->constant + x0;
+    float* restrict out_u = r->out_u + x0, * restrict out_v = r->out_v + x0;
+    const ty_turing_rates q = *k;
+    for (int i = 0; i < n; i++)
+    {
+        float a = u[i], b = v[i];
+        float flow_u = (w->u[0][i] * (u[i - 1] - a) + w->u[1][i] * (u[i + 1] - a)) +
+                       (w->u[2][i] * (uu[i] - a) + w->u[3][i] * (ud[i] - a));
+        float flow_v = (w->v[0][i] * (v[i - 1] - b) + w->v[1][i] * (v[i + 1] - b)) +
+                       (w->v[2][i] * (vu[i] - b) + w->v[3][i] * (vd[i] - b));
+        float f = clamp((q.uu * a + q.uv * b) + c[i], q.u_most);
+        float g = clamp((q.vu * a + q.vv * b) + q.v_constant, q.v_most);
+        out_u[i] = (q.keep_u * a + f) + q.spread_u * flow_u;
+        out_v[i] = (q.keep_v * b + g) + q.spread_v * flow_v;
+    }
+}
+
+static void row_weighted(const ty_turing_rates* k, const ty_turing_rows* r, int width)
+{
+    bool corners = r->along_cos != NULL;
+    weights w;
+    for (int x0 = 0; x0 < width; x0 += SEGMENT)
+    {
+        int n = width - x0 < SEGMENT ? width - x0 : SEGMENT;
+        weights_open(r, corners, x0, n, &w);
+        if (corners)
+            weights_along(r, x0, n, &w);
+        if (k->limit != TY_TURING_LIMIT_NONE && k->conservative)
+            weights_limit_faces(k, r, x0, n, &w);
+        else if (k->limit != TY_TURING_LIMIT_NONE)
+            weights_limit(k, r, corners, x0, n, &w);
+        weighted_step(k, r, x0, n, &w);
+        if (corners)
+            corners_add(k, r, x0, n, &w);
+    }
+}
+
+WIDE static void row_hold(const ty_turing_rows* r, int width)
+{
+    const float* restrict weight = r->weight, * restrict pull_u = r->pull_u, * restrict pull_v = r->pull_v;
+    float* restrict out_u = r->out_u, * restrict out_v = r->out_v;
+    for (int x = 0; x < width; x++)
+    {
+        out_u[x] = weight[x] * out_u[x] + pull_u[x];
+        out_v[x] = weight[x] * out_v[x] + pull_v[x];
+    }
+}
+
+void JOIN(ty_turing_row_, KERNEL)(const ty_turing_rates* rates, const ty_turing_rows* rows, int width)
+{
+    if (rates->limit == TY_TURING_LIMIT_NONE && !rows->inverse && !rows->along_cos)
+        row_plain(rates, rows, width);
+    else
+        row_weighted(rates, rows, width);
+    if (rows->weight)
+        row_hold(rows, width);
+}
