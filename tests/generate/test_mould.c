@@ -65,6 +65,61 @@ static void test_block(void** state)
     ty_container_destroy(c);
 }
 
+static void ball_init(ty_element* out)
+{
+    ty_element_def ball = ty_element_def_default();
+    ball.kind = TY_ELEMENT_BALL;
+    ball.length = ball.width = ball.thickness = 2.0f * RADIUS;
+    ball.variants = 1;
+    ty_error error;
+    assert_int_equal(ty_element_init(&ball, (ty_seed){1}, 0, out, &error), TY_OK);
+}
+
+// A column of balls in a closed mould, leaning on its wall; without the walls nothing touches the lowest but the
+// others, and all fall as one, by g and nothing else.
+static void test_without_walls_all_falls(void** state)
+{
+    (void)state;
+    ty_element grain;
+    ball_init(&grain);
+    ty_container_def form = ty_container_def_default();
+    form.kind = TY_CONTAINER_BOX;
+    form.role = TY_CONTAINER_MOULD;
+    form.shape.size = ty_vec3_make(2.1f * RADIUS, 4.0f * RADIUS, 2.1f * RADIUS);
+    ty_container* mould = container(&form);
+    ty_pile_def def = ty_pile_def_default();
+    def.grains = &grain;
+    def.grain_count = 1;
+    def.container = mould;
+    ty_pile* pile = ty_pile_create(&def);
+    for (int i = 0; i < 3; i++)
+    {
+        ty_body body = {.rotation = ty_quat_identity(), .scale = 1.0f};
+        body.position = ty_vec3_make((i & 1 ? 0.5f : -0.5f) * RADIUS, ((float)i * 1.9f - 2.9f) * RADIUS, 0.0f);
+        ty_pile_add(pile, &body, 1);
+    }
+    for (int i = 0; i < 1500; i++)
+        ty_pile_step(pile, NULL);
+    ty_pile_metrics m;
+    ty_pile_measure(pile, &m, NULL);
+    print_message("  %d float in the mould, %.3g mm/s\n", m.floating, (double)m.speed_max * 1e3);
+    assert_true(m.speed_max < 1e-4f && m.loaded > 0.5f && m.floating < 3);
+    ty_pile_set_container(pile, NULL);
+    ty_pile_measure(pile, &m, NULL);
+    assert_int_equal(m.floating, 3);
+    ty_vec3 before = ty_pile_momentum(pile);
+    for (int i = 0; i < 10; i++)
+        ty_pile_step(pile, NULL);
+    ty_vec3 gained = ty_mul(ty_sub(ty_pile_momentum(pile), before), 1.0f / 3.0f);
+    print_message("  %.5g %.5g %.5g mm/s in 4 ms\n", (double)gained.x * 1e3, (double)gained.y * 1e3,
+                  (double)gained.z * 1e3);
+    assert_float_equal(gained.y, -9.81f * 10.0f / def.rate, 1e-5f);
+    assert_true(fabsf(gained.x) < 1e-6f && fabsf(gained.z) < 1e-6f);
+    ty_pile_destroy(pile);
+    ty_container_destroy(mould);
+    ty_element_term(&grain);
+}
+
 static ty_wall_motion belt(void* context, int wall, float seconds)
 {
     (void)context, (void)wall;
@@ -78,13 +133,8 @@ static void test_bent_body(void** state)
 {
     (void)state;
     const float s = 1.6f, radius = RADIUS * ty_pow(s, 1.0f / 3.0f);
-    ty_element_def ball = ty_element_def_default();
-    ball.kind = TY_ELEMENT_BALL;
-    ball.length = ball.width = ball.thickness = 2.0f * RADIUS;
-    ball.variants = 1;
     ty_element grain;
-    ty_error error;
-    assert_int_equal(ty_element_init(&ball, (ty_seed){1}, 0, &grain, &error), TY_OK);
+    ball_init(&grain);
     ty_container_def room = ty_container_def_default();
     room.kind = TY_CONTAINER_GROUND;
     room.ground = 0.01f;
@@ -163,6 +213,56 @@ static void test_mould_keeps_or_slumps(void** state)
     ty_aggregate_destroy(held);
 }
 
+enum
+{
+    FRAMES = 15, // ten of them while it presses
+};
+
+typedef struct film
+{
+    float across[FRAMES]; // m, what the meshes take from face to face of the mould
+    int shown;
+} film;
+
+static ty_status across_keep(void* context, int frame, ty_aggregate* a, ty_error* error)
+{
+    (void)error;
+    film* f = context;
+    ty_bounds all = ty_bounds_empty();
+    for (uint32_t i = 0; i < a->instance_count; i++)
+    {
+        const ty_mesh* mesh = a->prototypes[a->prototype_index[i]];
+        for (uint32_t v = 0; v < mesh->vertex_count; v++)
+            all = ty_bounds_add(all, ty_map_point(&a->transforms[i], mesh->positions[v]));
+    }
+    f->across[frame - 1] = all.high.z - all.low.z;
+    f->shown++;
+    return TY_OK;
+}
+
+// It closes within .4 of the press and stays closed to its end, when what is pressed would part again; then nothing
+// holds the grains.
+static void test_mould_stays_closed(void** state)
+{
+    (void)state;
+    ty_aggregate_recipe r = rice_ball(0.0f, 0.0f);
+    float width = r.container.onigiri.thickness, closed = (1.0f - r.press.strain) * width;
+    r.animate.frames = FRAMES;
+    r.animate.fps = 10.0f / r.press.seconds;
+    film f = {0};
+    ty_aggregate_sink sink = {across_keep, &f};
+    ty_error error;
+    if (ty_aggregate_film(&r, NULL, &sink, &error) != TY_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(f.shown, FRAMES);
+    for (int i = 0; i < FRAMES; i++)
+        print_message("  frame %d: %.2f of %.2f mm\n", i + 1, (double)f.across[i] * 1e3, (double)width * 1e3);
+    for (int i = 4; i < 10; i++)
+        assert_float_equal(f.across[i], closed, 0.01f * width);
+    assert_true(f.across[0] > closed + 0.02f * width);
+    assert_true(f.across[FRAMES - 1] > width);
+}
+
 static void test_refused(void** state)
 {
     (void)state;
@@ -184,8 +284,12 @@ static void test_refused(void** state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_onigiri),   cmocka_unit_test(test_block),
-        cmocka_unit_test(test_bent_body), cmocka_unit_test(test_mould_keeps_or_slumps),
+        cmocka_unit_test(test_onigiri),
+        cmocka_unit_test(test_block),
+        cmocka_unit_test(test_bent_body),
+        cmocka_unit_test(test_without_walls_all_falls),
+        cmocka_unit_test(test_mould_keeps_or_slumps),
+        cmocka_unit_test(test_mould_stays_closed),
         cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
