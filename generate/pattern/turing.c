@@ -80,11 +80,32 @@ static ty_turing_rates rates_make(const ty_turing_def* def)
 
 static float* plane_alloc(const ty_turing* field)
 {
-    return TY_TRY_ALLOC(float, field->stride*(size_t)(field->def.height + 2));
+    return TY_TRY_ALLOC(float, field->stream.stride*(size_t)(field->def.height + 2));
+}
+
+static bool planes_alloc(stream* s)
+{
+    bool good = true;
+    for (int i = 0; i < s->plane_count; i++)
+    {
+        s->front[i] = TY_TRY_ALLOC(float, s->stride*(size_t)s->height);
+        s->back[i] = TY_TRY_ALLOC(float, s->stride*(size_t)s->height);
+        good = good && s->front[i] && s->back[i];
+    }
+    return good;
+}
+
+static bool hold_alloc(ty_turing* field)
+{
+    float** const all[] = {&field->weight, &field->pull_u, &field->pull_v};
+    bool good = true;
+    for (int i = 0; i < 3 && !field->weight; i++)
+        good = good && (*all[2 - i] = plane_alloc(field)) != NULL; // weight last: it says that there is all
+    return good;
 }
 
 // The widest kernel of this CPU; both give the same bits.
-static ty_turing_row_fn* row_choose(void)
+static stream_row_fn* row_choose(void)
 {
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd") &&
@@ -105,15 +126,17 @@ ty_status ty_turing_create(const ty_turing_def* def, ty_turing** out, ty_error* 
     if (field->def.time_step == 0.0f)
         field->def.time_step = ty_turing_step_default(def);
     field->rates = rates_make(&field->def);
-    field->row = row_choose();
-    int aligned = TY_TURING_ALIGNED;
-    field->stride = (size_t)((def->width + aligned - 1) / aligned * aligned + 2 * aligned);
-    field->u = plane_alloc(field);
-    field->v = plane_alloc(field);
-    field->next_u = plane_alloc(field);
-    field->next_v = plane_alloc(field);
+    bool wraps = def->edge == TY_TURING_WRAP;
+    field->stream = (stream){.width = def->width,
+                             .height = def->height,
+                             .wrap_x = wraps,
+                             .wrap_y = wraps,
+                             .plane_count = 2,
+                             .stride = stream_stride(def->width),
+                             .row = row_choose(),
+                             .context = field};
     field->constant = plane_alloc(field);
-    if (!field->u || !field->v || !field->next_u || !field->next_v || !field->constant)
+    if (!planes_alloc(&field->stream) || !field->constant || (def->edge == TY_TURING_FIXED && !hold_alloc(field)))
     {
         ty_turing_destroy(field);
         return ty_error_set(error, TY_NO_MEMORY, "no memory for %d x %d cells", def->width, def->height);
@@ -126,12 +149,14 @@ void ty_turing_destroy(ty_turing* field)
 {
     if (!field)
         return;
-    float* const all[] = {field->u,       field->v,      field->next_u, field->next_v, field->constant,
-                          field->inverse, field->weight, field->pull_u, field->pull_v};
+    float* const all[] = {field->stream.front[0], field->stream.front[1], field->stream.back[0],
+                          field->stream.back[1],  field->constant,        field->inverse,
+                          field->weight,          field->pull_u,          field->pull_v};
     for (int i = 0; i < (int)(sizeof all / sizeof *all); i++)
         ty_free(all[i]);
     for (int i = 0; i < TY_TURING_PLANES; i++)
         ty_free(field->planes[i]);
+    stream_release(&field->stream);
     ty_free(field);
 }
 
@@ -142,12 +167,12 @@ float ty_turing_time_step(const ty_turing* field)
 
 float* ty_turing_u(ty_turing* field, int y)
 {
-    return field->u + ty_turing_cell(field, y);
+    return field->stream.front[0] + stream_cell(&field->stream, y);
 }
 
 float* ty_turing_v(ty_turing* field, int y)
 {
-    return field->v + ty_turing_cell(field, y);
+    return field->stream.front[1] + stream_cell(&field->stream, y);
 }
 
 // What comes with a plane: those of one thing are there together.
@@ -163,11 +188,7 @@ static bool derived_alloc(ty_turing* field, ty_turing_plane plane)
 {
     if (plane == TY_TURING_OPEN)
         return field->inverse || (field->inverse = plane_alloc(field));
-    if (plane != TY_TURING_HOLD)
-        return true;
-    return (field->weight || (field->weight = plane_alloc(field))) &&
-           (field->pull_u || (field->pull_u = plane_alloc(field))) &&
-           (field->pull_v || (field->pull_v = plane_alloc(field)));
+    return plane != TY_TURING_HOLD || hold_alloc(field);
 }
 
 ty_status ty_turing_need(ty_turing* field, ty_turing_plane plane, ty_error* error)
@@ -188,7 +209,7 @@ ty_status ty_turing_need(ty_turing* field, ty_turing_plane plane, ty_error* erro
     for (int p = first; p <= last; p++)
     {
         field->planes[p] = made[p];
-        for (size_t i = 0; neutral[p] != 0.0f && i < field->stride * (size_t)(field->def.height + 2); i++)
+        for (size_t i = 0; neutral[p] != 0.0f && i < field->stream.stride * (size_t)(field->def.height + 2); i++)
             made[p][i] = neutral[p];
     }
     return TY_OK;

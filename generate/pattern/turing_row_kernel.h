@@ -13,10 +13,25 @@
 #define WIDE
 #endif
 
+// Rows that are read and written never overlap.
+#if defined(__clang__)
+#define SIDE_BY_SIDE _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define SIDE_BY_SIDE _Pragma("GCC ivdep")
+#endif
+
 enum
 {
     SEGMENT = 256 // cells whose weights are at hand at a time
 };
+
+// Rows above, here and below from the first cell to be made, with their neighbours; NULL where a plane is not needed.
+typedef struct cells
+{
+    const float *u[3], *v[3], *open[3];
+    const float *constant, *inverse, *weight, *pull_u, *pull_v, *along_cos, *along_sin;
+    float *out_u, *out_v;
+} cells;
 
 // Left, right, up, down; left up, right up, left down, right down.
 typedef struct weights
@@ -35,12 +50,13 @@ static inline float steep(float slope, float a)
     return 1.0f / (1.0f + slope * a);
 }
 
-WIDE static void row_plain(const ty_turing_rates* k, const ty_turing_rows* r, int width)
+WIDE static void row_plain(const ty_turing_rates* k, const cells* r, int width)
 {
-    const float* restrict u = r->u[1], * restrict uu = r->u[0], * restrict ud = r->u[2], * restrict c = r->constant;
-    const float* restrict v = r->v[1], * restrict vu = r->v[0], * restrict vd = r->v[2];
-    float* restrict out_u = r->out_u, * restrict out_v = r->out_v;
+    const float *u = r->u[1], *uu = r->u[0], *ud = r->u[2], *c = r->constant;
+    const float *v = r->v[1], *vu = r->v[0], *vd = r->v[2];
+    float *out_u = r->out_u, *out_v = r->out_v;
     const ty_turing_rates q = *k;
+    SIDE_BY_SIDE
     for (int x = 0; x < width; x++)
     {
         float a = u[x], b = v[x];
@@ -54,19 +70,21 @@ WIDE static void row_plain(const ty_turing_rates* k, const ty_turing_rows* r, in
 }
 
 // The share of each neighbour that comes through its side.
-WIDE static void weights_open(const ty_turing_rows* r, bool corners, int x0, int n, weights* w)
+WIDE static void weights_open(const cells* r, bool corners, int x0, int n, weights* w)
 {
     static const int row[8] = {1, 1, 0, 2, 0, 0, 2, 2}, step[8] = {-1, 1, 0, 0, -1, 1, -1, 1};
     for (int j = 0; j < (corners ? 8 : 4); j++)
     {
-        float* restrict out = w->u[j];
+        float* out = w->u[j];
         if (!r->inverse)
         {
+            SIDE_BY_SIDE
             for (int i = 0; i < n; i++)
                 out[i] = 1.0f;
             continue;
         }
-        const float* restrict open = r->open[row[j]] + x0 + step[j], * restrict inverse = r->inverse + x0;
+        const float *open = r->open[row[j]] + x0 + step[j], *inverse = r->inverse + x0;
+        SIDE_BY_SIDE
         for (int i = 0; i < n; i++)
         {
             float share = open[i] * inverse[i];
@@ -74,15 +92,17 @@ WIDE static void weights_open(const ty_turing_rows* r, bool corners, int x0, int
         }
     }
     for (int j = 0; j < 4; j++)
-        for (int i = 0; i < n; i++)
-            w->v[j][i] = w->u[j][i];
+        SIDE_BY_SIDE
+    for (int i = 0; i < n; i++)
+        w->v[j][i] = w->u[j][i];
 }
 
 // The tensor a, b; b, c by eight neighbours with no negative weight: a - |b| beside, c - |b| above and below, b or
 // nothing along each diagonal (Weickert 1998, nonnegativity discretisation).
-WIDE static void weights_along(const ty_turing_rows* r, int x0, int n, weights* w)
+WIDE static void weights_along(const cells* r, int x0, int n, weights* w)
 {
-    const float* restrict cosine = r->along_cos + x0, * restrict sine = r->along_sin + x0;
+    const float *cosine = r->along_cos + x0, *sine = r->along_sin + x0;
+    SIDE_BY_SIDE
     for (int i = 0; i < n; i++)
     {
         float b = sine[i], size = fabsf(b), falling = 0.5f * (size + b), rising = 0.5f * (size - b);
@@ -98,13 +118,14 @@ WIDE static void weights_along(const ty_turing_rows* r, int x0, int n, weights* 
     }
 }
 
-WIDE static void weights_limit_faces(const ty_turing_rates* k, const ty_turing_rows* r, int x0, int n, weights* w)
+WIDE static void weights_limit_faces(const ty_turing_rates* k, const cells* r, int x0, int n, weights* w)
 {
     static const int row[4] = {1, 1, 0, 2}, step[4] = {-1, 1, 0, 0};
-    const float* restrict u = r->u[1] + x0;
+    const float* u = r->u[1] + x0;
     for (int j = 0; j < 4; j++)
     {
-        const float* restrict next = r->u[row[j]] + x0 + step[j];
+        const float* next = r->u[row[j]] + x0 + step[j];
+        SIDE_BY_SIDE
         for (int i = 0; i < n; i++)
         {
             float g = steep(k->slope, fabsf(next[i] - u[i]));
@@ -115,28 +136,31 @@ WIDE static void weights_limit_faces(const ty_turing_rates* k, const ty_turing_r
 }
 
 // |grad U| by the differences to the right and down, over open sides alone.
-WIDE static void weights_limit(const ty_turing_rates* k, const ty_turing_rows* r, bool corners, int x0, int n,
-                               weights* w)
+WIDE static void weights_limit(const ty_turing_rates* k, const cells* r, bool corners, int x0, int n, weights* w)
 {
-    const float* restrict u = r->u[1] + x0, * restrict down = r->u[2] + x0;
+    const float *u = r->u[1] + x0, *down = r->u[2] + x0;
     float g[SEGMENT];
+    SIDE_BY_SIDE
     for (int i = 0; i < n; i++)
     {
         float a = w->v[1][i] * (u[i + 1] - u[i]), b = w->v[3][i] * (down[i] - u[i]);
         g[i] = steep(k->slope, sqrtf(a * a + b * b));
     }
     for (int j = 0; j < (corners ? 8 : 4); j++)
-        for (int i = 0; i < n; i++)
-            w->u[j][i] *= g[i];
+        SIDE_BY_SIDE
+    for (int i = 0; i < n; i++)
+        w->u[j][i] *= g[i];
     for (int j = 0; j < (k->limit == TY_TURING_LIMIT_BOTH ? 4 : 0); j++)
-        for (int i = 0; i < n; i++)
-            w->v[j][i] *= g[i];
+        SIDE_BY_SIDE
+    for (int i = 0; i < n; i++)
+        w->v[j][i] *= g[i];
 }
 
-WIDE static void corners_add(const ty_turing_rates* k, const ty_turing_rows* r, int x0, int n, const weights* w)
+WIDE static void corners_add(const ty_turing_rates* k, const cells* r, int x0, int n, const weights* w)
 {
-    const float* restrict u = r->u[1] + x0, * restrict up = r->u[0] + x0, * restrict down = r->u[2] + x0;
-    float* restrict out = r->out_u + x0;
+    const float *u = r->u[1] + x0, *up = r->u[0] + x0, *down = r->u[2] + x0;
+    float* out = r->out_u + x0;
+    SIDE_BY_SIDE
     for (int i = 0; i < n; i++)
     {
         float above = w->u[4][i] * (up[i - 1] - u[i]) + w->u[5][i] * (up[i + 1] - u[i]);
@@ -145,13 +169,14 @@ WIDE static void corners_add(const ty_turing_rates* k, const ty_turing_rows* r, 
     }
 }
 
-WIDE static void weighted_step(const ty_turing_rates* k, const ty_turing_rows* r, int x0, int n, const weights* w)
+WIDE static void weighted_step(const ty_turing_rates* k, const cells* r, int x0, int n, const weights* w)
 {
-    const float* restrict u = r->u[1] + x0, * restrict uu = r->u[0] + x0, * restrict ud = r->u[2] + x0;
-    const float* restrict v = r->v[1] + x0, * restrict vu = r->v[0] + x0, * restrict vd = r->v[2] + x0;
-    const float* restrict c = r->constant + x0;
-    float* restrict out_u = r->out_u + x0, * restrict out_v = r->out_v + x0;
+    const float *u = r->u[1] + x0, *uu = r->u[0] + x0, *ud = r->u[2] + x0;
+    const float *v = r->v[1] + x0, *vu = r->v[0] + x0, *vd = r->v[2] + x0;
+    const float* c = r->constant + x0;
+    float *out_u = r->out_u + x0, *out_v = r->out_v + x0;
     const ty_turing_rates q = *k;
+    SIDE_BY_SIDE
     for (int i = 0; i < n; i++)
     {
         float a = u[i], b = v[i];
@@ -166,7 +191,7 @@ WIDE static void weighted_step(const ty_turing_rates* k, const ty_turing_rows* r
     }
 }
 
-static void row_weighted(const ty_turing_rates* k, const ty_turing_rows* r, int width)
+static void row_weighted(const ty_turing_rates* k, const cells* r, int width)
 {
     bool corners = r->along_cos != NULL;
     weights w;
@@ -186,10 +211,11 @@ static void row_weighted(const ty_turing_rates* k, const ty_turing_rows* r, int 
     }
 }
 
-WIDE static void row_hold(const ty_turing_rows* r, int width)
+WIDE static void row_hold(const cells* r, int width)
 {
-    const float* restrict weight = r->weight, * restrict pull_u = r->pull_u, * restrict pull_v = r->pull_v;
-    float* restrict out_u = r->out_u, * restrict out_v = r->out_v;
+    const float *weight = r->weight, *pull_u = r->pull_u, *pull_v = r->pull_v;
+    float *out_u = r->out_u, *out_v = r->out_v;
+    SIDE_BY_SIDE
     for (int x = 0; x < width; x++)
     {
         out_u[x] = weight[x] * out_u[x] + pull_u[x];
@@ -197,12 +223,39 @@ WIDE static void row_hold(const ty_turing_rows* r, int width)
     }
 }
 
-void JOIN(ty_turing_row_, KERNEL)(const ty_turing_rates* rates, const ty_turing_rows* rows, int width)
+static const float* plane_at(const float* plane, size_t at)
 {
-    if (rates->limit == TY_TURING_LIMIT_NONE && !rows->inverse && !rows->along_cos)
-        row_plain(rates, rows, width);
+    return plane ? plane + at : NULL;
+}
+
+static cells cells_at(const ty_turing* field, const stream_rows* rows, int y, int begin)
+{
+    size_t at = ty_turing_cell(field, y) + (size_t)begin, stride = field->stream.stride;
+    const float* open = field->planes[TY_TURING_OPEN];
+    return (cells){
+        .u = {rows->above[0] + begin, rows->at[0] + begin, rows->below[0] + begin},
+        .v = {rows->above[1] + begin, rows->at[1] + begin, rows->below[1] + begin},
+        .open = {plane_at(open, at - stride), plane_at(open, at), plane_at(open, at + stride)},
+        .constant = field->constant + at,
+        .inverse = open ? field->inverse + at : NULL,
+        .weight = plane_at(field->weight, at),
+        .pull_u = plane_at(field->pull_u, at),
+        .pull_v = plane_at(field->pull_v, at),
+        .along_cos = plane_at(field->planes[TY_TURING_ALONG_COS], at),
+        .along_sin = plane_at(field->planes[TY_TURING_ALONG_SIN], at),
+        .out_u = rows->out[0] + begin,
+        .out_v = rows->out[1] + begin,
+    };
+}
+
+void JOIN(ty_turing_row_, KERNEL)(const void* context, const stream_rows* rows, int y, int begin, int end)
+{
+    const ty_turing* field = context;
+    cells c = cells_at(field, rows, y, begin);
+    if (field->rates.limit == TY_TURING_LIMIT_NONE && !c.inverse && !c.along_cos)
+        row_plain(&field->rates, &c, end - begin);
     else
-        row_weighted(rates, rows, width);
-    if (rows->weight)
-        row_hold(rows, width);
+        row_weighted(&field->rates, &c, end - begin);
+    if (c.weight)
+        row_hold(&c, end - begin);
 }

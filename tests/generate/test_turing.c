@@ -352,14 +352,18 @@ static void threads_kernels_and_chunks_give_the_same_bits(void** state)
     {
         ty_turing_limit limit = kind < 2 ? TY_TURING_LIMIT_NONE : kind % 2 + 1;
         ty_turing* reference = rich(limit, kind == 4, kind % 3, kind > 0);
-        reference->row = ty_turing_row_base;
+        reference->stream.row = ty_turing_row_base;
+        reference->stream.depth = reference->stream.bands = 1;
         for (int i = 0; i < 70; i++)
             ty_turing_step(reference, 1, NULL);
         for (int i = 0; i < 4; i++)
         {
             ty_turing* field = rich(limit, kind == 4, kind % 3, kind > 0);
             if (i == 0)
-                field->row = ty_turing_row_base;
+                field->stream.row = ty_turing_row_base;
+            field->stream.depth = i == 1 ? 11 : 0;
+            field->stream.strip = i == 2 ? 48 : 0;
+            field->stream.bands = i == 3 ? 5 : 0;
             ty_turing_step(field, 33, workers[i]);
             ty_turing_step(field, 37, workers[i]);
             assert_equal_fields(reference, field);

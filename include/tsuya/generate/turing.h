@@ -11,7 +11,7 @@ typedef struct ty_turing ty_turing; // opaque
 typedef enum ty_turing_edge
 {
     TY_TURING_FREE,  // nothing passes
-    TY_TURING_FIXED, // beyond it stand edge_u and edge_v
+    TY_TURING_FIXED, // the cells at it are edge_u and edge_v
     TY_TURING_WRAP,  // the far side is the neighbour
 } ty_turing_edge;
 
