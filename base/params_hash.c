@@ -73,6 +73,8 @@ static void add_list(walk* w, const ty_param* row, const ty_param_list* list, si
     for (int i = 0; i < list->count; i++)
         if (row->type == TY_PARAM_LIST)
             add_table(w, row->group, (const char*)list->items + (size_t)i * row->group->size, length);
+        else if (row->type == TY_PARAM_POINTS2)
+            ty_hasher_add(w->hasher, (const ty_vec2*)list->items + i, sizeof(ty_vec2));
         else if (row->type == TY_PARAM_POINTS)
             ty_hasher_add(w->hasher, (const ty_vec3*)list->items + i, sizeof(ty_vec3));
         else
@@ -113,6 +115,7 @@ static void add_value(walk* w, const ty_param* row, const void* at, size_t lengt
         return;
     case TY_PARAM_LIST:
     case TY_PARAM_POINTS:
+    case TY_PARAM_POINTS2:
     case TY_PARAM_NAMES:
         add_list(w, row, at, length);
         return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `tsuya pack`, `tsuya fill`, `tsuya filter` and `tsuya roots`: a recipe to a file, or to files by number.
+// `tsuya pack`, `tsuya filter` and `tsuya roots`: a recipe to a file, or to files by number.
 #include "cli.h"
 #include <limits.h>
 #include <stdio.h>
@@ -17,11 +17,9 @@ typedef struct product
     bool is_sequence, is_file;     // both: the output tells
 } product;
 
-static const char *const fill_extensions[] = {"exr", NULL}, *const filter_extensions[] = {"exr", "png", NULL},
-                         *const mesh_extensions[] = {"ply", NULL};
+static const char *const filter_extensions[] = {"exr", "png", NULL}, *const mesh_extensions[] = {"ply", NULL};
 static const product products[] = {
     {"pack", "aggregate", ty_aggregate_endings, true, true},
-    {"fill", "fill", fill_extensions, true, false},
     {"filter", "filter", filter_extensions, true, true},
     {"roots", "roots", mesh_extensions, false, true},
 };
@@ -130,7 +128,6 @@ static const ty_option pack_options[] = {
     {"element", 0, "N", "instead one of its elements alone, from 1, as a mesh: .ply"},
     TY_SCENE_OPTIONS,
 };
-OPTIONS(fill_options, "OUT.####.exr", "the frames to write, from 1");
 OPTIONS(filter_options, "OUT.png", "the picture to write, .png or .exr; with #### the frames, from 1");
 OPTIONS(roots_options, "OUT.ply", "the mesh to write");
 
@@ -143,18 +140,6 @@ const ty_command ty_command_pack = {
     1,
     pack_options,
     TY_PARAM_COUNT(pack_options),
-    run,
-};
-
-const ty_command ty_command_fill = {
-    "fill",
-    "RECIPE -o OUT.####.exr",
-    "make the frames of a living pattern from its recipe",
-    "tsuya fill scenes/still_life/fill.yaml -o 'out/fill.####.exr' --set seed=2",
-    1,
-    1,
-    fill_options,
-    TY_PARAM_COUNT(fill_options),
     run,
 };
 

@@ -21,6 +21,12 @@ static ty_status png_write(const char* path, const ty_exr* frame, const ty_color
         for (size_t i = 0; plane && i < size; i++)
             image.pixels[i * (size_t)channels + (size_t)c] = ((const float*)plane->pixels)[i];
     }
+    for (size_t i = 0; planes[3] && i < size; i++) // such files hold colours that are not multiplied by their alpha
+    {
+        float* pixel = image.pixels + 4 * i;
+        for (int c = 0; c < 3 && pixel[3] > 0.0f; c++)
+            pixel[c] /= pixel[3];
+    }
     ty_status status =
         ty_color_convert(color, "ACEScg", "srgb_texture", image.pixels, image.width * image.height, channels, error);
     if (status == TY_OK)

@@ -111,6 +111,7 @@ void ty_param_expected(const ty_param* row, ty_text* out)
         [TY_PARAM_BRIEF_GROUP] = "a mapping",
         [TY_PARAM_LIST] = "a list of mappings",
         [TY_PARAM_POINTS] = "a list of points [x, y, z]",
+        [TY_PARAM_POINTS2] = "a list of points [x, y]",
         [TY_PARAM_NAMES] = "a mapping of names to names",
         [TY_PARAM_STRINGS] = "a list of texts",
     };
@@ -153,6 +154,7 @@ const char* ty_param_type_name(ty_param_type type)
         [TY_PARAM_BRIEF_GROUP] = "number or mapping",
         [TY_PARAM_LIST] = "list",
         [TY_PARAM_POINTS] = "points",
+        [TY_PARAM_POINTS2] = "points",
         [TY_PARAM_NAMES] = "names",
         [TY_PARAM_STRINGS] = "texts",
     };
@@ -212,6 +214,7 @@ void ty_param_value_text(const ty_param* row, const void* def, ty_text* out)
     case TY_PARAM_GROUP:
     case TY_PARAM_LIST:
     case TY_PARAM_POINTS:
+    case TY_PARAM_POINTS2:
     case TY_PARAM_NAMES:
     case TY_PARAM_STRINGS:
         break;

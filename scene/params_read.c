@@ -180,13 +180,18 @@ static bool read_list(ty_reader* reader, ty_node* node, const ty_param* row, ty_
 
 static bool read_points(ty_reader* reader, const ty_node* node, const ty_param* row, ty_param_list* out)
 {
+    int size = row->type == TY_PARAM_POINTS2 ? 2 : 3;
     if (!is_list(reader, node, row))
         return false;
-    ty_vec3* points = TY_ARENA_ALLOC(reader->arena, ty_vec3, node->count);
-    const ty_param each = {row->name, TY_PARAM_FLOAT3, row->unit, row->minimum, row->maximum, NULL, NULL, 0, "", false};
+    float* points = TY_ARENA_ALLOC(reader->arena, float, size * node->count);
+    const ty_param each = {row->name,    size == 2 ? TY_PARAM_FLOAT2 : TY_PARAM_FLOAT3,
+                           row->unit,    row->minimum,
+                           row->maximum, NULL,
+                           NULL,         0,
+                           "",           false};
     bool good = true;
     for (int i = 0; i < node->count; ++i)
-        good &= !node->items[i]->bad && ty_param_read_numbers(reader, node->items[i], &each, &points[i].x, 3);
+        good &= !node->items[i]->bad && ty_param_read_numbers(reader, node->items[i], &each, &points[size * i], size);
     *out = (ty_param_list){points, node->count};
     return good;
 }
@@ -288,6 +293,7 @@ bool ty_param_read(ty_reader* reader, ty_node* node, const ty_param* row, void* 
     case TY_PARAM_LIST:
         return read_list(reader, node, row, field);
     case TY_PARAM_POINTS:
+    case TY_PARAM_POINTS2:
         return read_points(reader, node, row, field);
     case TY_PARAM_NAMES:
         return read_names(reader, node, row, field);

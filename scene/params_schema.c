@@ -151,8 +151,9 @@ static void add_type(ty_text* out, const ty_param* row)
         ty_text_format(out, "{\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/%s\"}}", row->group->name);
         break;
     case TY_PARAM_POINTS:
+    case TY_PARAM_POINTS2:
         ty_text_add(out, "{\"type\": \"array\", \"items\": ");
-        add_numbers(out, row, "number", 3);
+        add_numbers(out, row, "number", row->type == TY_PARAM_POINTS2 ? 2 : 3);
         ty_text_add(out, "}");
         break;
     case TY_PARAM_NAMES:

@@ -9,6 +9,8 @@
 #include <tsuya/geometry/aggregate_export.h>
 #include <tsuya/geometry/mesh_file.h>
 
+#define MOST_STATE ((size_t)4 << 30) // bytes of a file that frames go on from
+
 // Where a recipe may stand in an asset, by what it makes.
 static const char* const places[] = {"aggregate", "mesh", "frames"};
 
@@ -149,6 +151,8 @@ typedef struct frame_writer
 {
     const char *pattern, *text, *key;
     const ty_color* color; // NULL: frames are EXR files
+    const char* picture;   // a pattern of pictures beside them; NULL = none
+    const char* state;     // of a run: a file; NULL = none
 } frame_writer;
 
 static ty_status write_frame(void* context, int frame, ty_exr* image, ty_error* error)
@@ -158,7 +162,18 @@ static ty_status write_frame(void* context, int frame, ty_exr* image, ty_error* 
     ty_exr_add_string(image, "tsuya/recipe", writer->text);
     ty_exr_add_string(image, "tsuya/hash", writer->key);
     ty_path_frame(writer->pattern, frame, path);
+    ty_status status = ty_frame_write(path, image, writer->color, error);
+    if (status != TY_OK || !writer->picture)
+        return status;
+    ty_path_frame(writer->picture, frame, path);
     return ty_frame_write(path, image, writer->color, error);
+}
+
+static ty_status write_state(void* context, ty_exr* state, ty_error* error)
+{
+    const frame_writer* writer = context;
+    ty_exr_add_string(state, "tsuya/recipe", writer->text);
+    return ty_exr_write(writer->state, state, error);
 }
 
 static void sign(char** recipe, char** hash, char* text, const char* key)
@@ -178,13 +193,16 @@ static ty_status write_film(void* context, int frame, ty_aggregate* aggregate, t
     return ty_aggregate_export(path, aggregate, false, error);
 }
 
-// partial: an aggregate that was interrupted and holds its state is written as well.
+// partial: an aggregate that was interrupted and holds its state is written as well. options: where else frames and
+// their state go; NULL = nowhere.
 static ty_status write_made(const ty_recipe* recipe, const char* key, const char* output, const ty_color* color,
-                            const ty_bytes* state, bool partial, ty_workers* workers, ty_error* error)
+                            const ty_bytes* state, const ty_scene_options* options, bool partial, ty_workers* workers,
+                            ty_error* error)
 {
     char* text = ty_recipe_text(recipe);
-    frame_writer writer = {output, text, key, color};
-    ty_made made = {.frames = {write_frame, &writer}, .state = state};
+    frame_writer writer = {
+        output, text, key, color, options ? options->picture : NULL, options ? options->state : NULL};
+    ty_made made = {.frames = {write_frame, writer.state ? write_state : NULL, &writer}, .state = state};
     if (recipe->generator->product == TY_PRODUCT_AGGREGATE && ty_path_is_sequence(output))
         made.film = (ty_aggregate_sink){write_film, &writer};
     ty_status status = recipe->generator->make(recipe->def, workers, &made, error), written = TY_OK;
@@ -213,7 +231,7 @@ static ty_status write_made(const ty_recipe* recipe, const char* key, const char
 ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* output, ty_workers* workers,
                           ty_error* error)
 {
-    return write_made(recipe, key, output, NULL, NULL, false, workers, error);
+    return write_made(recipe, key, output, NULL, NULL, NULL, false, workers, error);
 }
 
 // The recipe file as the root of a loader, read; false after reports.
@@ -257,9 +275,10 @@ static ty_status make_and_write(ty_loader* loader, const ty_recipe* recipe, int 
     const char* resume = loader->options->resume;
     ty_bytes state = {0};
     if (resume)
-        status = ty_aggregate_read_state(resume, &state, error);
+        status = recipe->generator->product == TY_PRODUCT_AGGREGATE ? ty_aggregate_read_state(resume, &state, error)
+                                                                    : ty_file_read(resume, MOST_STATE, &state, error);
     if (status == TY_OK)
-        status = write_made(recipe, key, output, loader->scene->color, resume ? &state : NULL, true,
+        status = write_made(recipe, key, output, loader->scene->color, resume ? &state : NULL, loader->options, true,
                             loader->options->workers, error);
     ty_bytes_term(&state);
     return status;

@@ -1,32 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parameter tables of a living pattern's recipe and their defaults.
-#include <tsuya/generate/fill_recipe.h>
+#include "fill_tables.h"
 
 ty_fill_recipe ty_fill_recipe_default(void)
 {
     return (ty_fill_recipe){
-        .field = ty_gray_scott_def_default(),
         .cells = {256, 256},
         .scale = 2,
         .tile = TY_PATTERN_TILE_BOTH,
         .variation_size = 64.0f,
         .drops = {24, 10.0f, {0.0f, 1.0f}},
+        .region = {.threshold = 0.5f},
         .steps = 8000,
         .loop = {24, 2000, 3.0f},
+        .run = {.steps = 60.0f, .first = 1},
         .tone = {0.12f, 0.28f},
         .high = {1.0f, 1.0f, 1.0f},
         .seed = {7},
     };
 }
-
-#define FIELD(name, type, unit, low, high, member, help)                                                               \
-    {                                                                                                                  \
-        name, type, unit, low, high, NULL, NULL, offsetof(OWNER, member), help, false                                  \
-    }
-#define GROUP(name, table, member, help)                                                                               \
-    {                                                                                                                  \
-        name, TY_PARAM_GROUP, "", 0, 0, NULL, table, offsetof(OWNER, member), help, false                              \
-    }
 
 // --- drops ---
 
@@ -72,7 +64,8 @@ static const ty_param_table loop_table = {
 
 // --- the recipe ---
 
-static const char* const tiles[] = {"both", "around", NULL};
+static const char* const tiles[] = {"both", "around", "none", NULL};
+static const char* const starts[] = {"drops", "plain", "empty", NULL};
 
 static void recipe_set_default(void* def)
 {
@@ -82,29 +75,47 @@ static void recipe_set_default(void* def)
 #define OWNER ty_fill_recipe
 static const ty_param recipe_rows[] = {
     FIELD("cells", TY_PARAM_INT2, "", 8, 8192, cells, "width and height; a stripe is about 12 cells from the next"),
-    FIELD("scale", TY_PARAM_INT, "", 1, 8, scale, "pixels of a frame per cell"),
-    {"tile", TY_PARAM_ENUM, "", 0, 0, tiles, NULL, offsetof(OWNER, tile),
-     "both ways, or around alone (top and bottom are edges that stripes meet at right angles)", false},
-    FIELD("feed", TY_PARAM_FLOAT, "", 0, 0.2, field.rates[0].feed, "F; .067 with kill .062 is a labyrinth"),
-    FIELD("kill", TY_PARAM_FLOAT, "", 0, 0.2, field.rates[0].kill, "k; feed .0265 with .0605 are spots that divide"),
+    FIELD("scale", TY_PARAM_INT, "", 1, 32, scale, "pixels of a frame per cell"),
+    CHOICE("tile", tiles, tile,
+           "both ways, or around alone (top and bottom are edges that stripes meet at right angles), or not at all"),
+    CHOICE("convention", fill_convention_names, convention, "whose diffusions, time step and stencil"),
+    FIELD("diffusion_u", TY_PARAM_FLOAT, "", 0, 2, diffusion_u, "Du, cells^2 per unit of time; 0: the convention's"),
+    FIELD("diffusion_v", TY_PARAM_FLOAT, "", 0, 2, diffusion_v,
+          "Dv; half of Du in all conventions; 0: the convention's"),
+    FIELD("time_step", TY_PARAM_FLOAT, "", 0, 10, time_step, "below about 2 / (8 Du + .2); 0: the convention's"),
+    FIELD("stencil", TY_PARAM_INT, "", 0, 9, stencil, "points of the Laplacian, 5 or 9; 0: the convention's"),
+    CHOICE("preset", fill_preset_names, preset, "rates by name, where there is no table of marks"),
+    FIELD("feed", TY_PARAM_FLOAT, "", 0, 0.2, feed, "F in place of the preset's"),
+    FIELD("kill", TY_PARAM_FLOAT, "", 0, 0.2, kill, "k in place of the preset's"),
     FIELD("variation", TY_PARAM_FLOAT, "", 0, 0.5, variation, "how much feed differs from place to place, relative"),
     FIELD("variation_size", TY_PARAM_FLOAT, "cells", 8, 8192, variation_size, "from one place to another"),
-    FIELD("diffusion_u", TY_PARAM_FLOAT, "", 1e-3, 2, field.diffusion_u, "Du, cells^2 per unit of time"),
-    FIELD("diffusion_v", TY_PARAM_FLOAT, "", 1e-3, 2, field.diffusion_v, "Dv; half of Du in all known tables"),
-    FIELD("time_step", TY_PARAM_FLOAT, "", 1e-3, 10, field.time_step, "below 2 / (8 Du + .2)"),
+    LIST("marks", &fill_mark_table, marks, "rates and looks by mark, at most 16; all cells begin with the first"),
+    CHOICE("start", starts, start, "u 1 and v 0 with drops in it, the plain state of the first mark, or u 1 and v 0"),
     GROUP("drops", &drops_table, drops, "where it starts"),
+    GROUP("region", &fill_region_table, region, "where it may be"),
     FIELD("steps", TY_PARAM_INT, "", 0, 1e7, steps, "of time until the middle of the loop"),
     GROUP("loop", &loop_table, loop, "what the frames show"),
+    GROUP("run", &fill_run_table, run, "frames in time instead of a loop"),
+    LIST("events", &fill_event_table, events, "what is done in a run, and when"),
+    LIST("auto", &fill_auto_table, autos, "marks that follow the pattern, later ones over earlier ones"),
+    FIELD("level", TY_PARAM_FLOAT, "", 0, 1, level,
+          "the v of a front; 0: half of the first mark's plain state, else .15"),
+    FIELD("sharp", TY_PARAM_BOOL, "", 0, 0, sharp,
+          "colours meet at the level, within a pixel, instead of over the tone"),
     FIELD("tone", TY_PARAM_FLOAT2, "", 0, 1, tone, "the v that becomes low and the v that becomes high"),
-    FIELD("low", TY_PARAM_RGB, "", 0, 100, low, "the ground"),
+    FIELD("low", TY_PARAM_RGB, "", 0, 100, low, "the ground, where there is no table of marks"),
     FIELD("high", TY_PARAM_RGB, "", 0, 100, high, "the pattern; grey ones give frames of the channel Y"),
+    FIELD("over", TY_PARAM_FRAMES, "", 0, 0, over,
+          "what stands behind and around: an image of the frames' size, or one a frame"),
+    FIELD("outside", TY_PARAM_RGB, "", 0, 100, outside, "colour of closed cells, where nothing stands behind"),
+    FIELD("outputs", TY_PARAM_STRINGS, "", 0, 0, outputs, "more channels: u, v, mark, trail, distance, mattes"),
     FIELD("seed", TY_PARAM_SEED, "", 0, 0, seed, "another seed, other drops"),
 };
 #undef OWNER
 
-static const ty_param_table recipe_table = {
+const ty_param_table ty_fill_recipe_table = {
     "fill",
-    "A living pattern: Gray-Scott reaction-diffusion from drops, over a loop of frames.",
+    "A living pattern: Gray-Scott reaction-diffusion on cells with marks, as a loop of frames or as a run with events.",
     sizeof(ty_fill_recipe),
     recipe_set_default,
     recipe_rows,
@@ -112,24 +123,25 @@ static const ty_param_table recipe_table = {
 
 const ty_param_table* ty_fill_recipe_params(void)
 {
-    return &recipe_table;
+    return &ty_fill_recipe_table;
 }
 
 static int frame_count(const void* def)
 {
-    return ((const ty_fill_recipe*)def)->loop.frames;
+    const ty_fill_recipe* recipe = def;
+    return recipe->run.frames > 0 ? recipe->run.frames : recipe->loop.frames;
 }
 
 static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_error* error)
 {
-    return ty_fill_make(def, workers, &out->frames, error);
+    return ty_fill_make_from(def, workers, &out->frames, out->state, error);
 }
 
 const ty_generator ty_fill_generator = {
     .kind = "fill",
     .build_id = "fill 2",
     .product = TY_PRODUCT_FRAMES,
-    .params = &recipe_table,
+    .params = &ty_fill_recipe_table,
     .frame_count = frame_count,
     .make = make,
 };

@@ -16,7 +16,7 @@ expect 2 "$tsuya" fill fill.yaml
 says "-o OUT.####.exr"
 expect 2 "$tsuya" fill fill.yaml -o out.exr
 says "####"
-expect 2 "$tsuya" fill fill.yaml -o 'out.####.png'
+expect 2 "$tsuya" fill fill.yaml -o 'out.####.jpg'
 says ".exr"
 expect 2 "$tsuya" roots roots.yaml -o roots.glb
 expect 2 "$tsuya" roots roots.yaml -o 'roots.##.ply'

@@ -46,7 +46,7 @@ static void forget(frames* f)
 static void make(const ty_fill_recipe* recipe, ty_workers* workers, frames* out)
 {
     ty_error error = {0};
-    const ty_frame_sink sink = {keep, out};
+    const ty_frame_sink sink = {keep, NULL, out};
     ty_status status = ty_fill_make(recipe, workers, &sink, &error);
     if (status != TY_OK)
         print_message("%s\n", error.text);
@@ -220,7 +220,7 @@ static void impossible_ones_are_refused(void** state)
     (void)state;
     ty_error error;
     frames f = {0};
-    const ty_frame_sink sink = {keep, &f};
+    const ty_frame_sink sink = {keep, NULL, &f};
     ty_fill_recipe recipe = small();
     recipe.loop.span = 2001;
     assert_int_equal(ty_fill_make(&recipe, NULL, &sink, &error), TY_BAD_INPUT);
@@ -229,7 +229,7 @@ static void impossible_ones_are_refused(void** state)
     recipe.tone[1] = recipe.tone[0];
     assert_int_equal(ty_fill_make(&recipe, NULL, &sink, &error), TY_BAD_INPUT);
     recipe = small();
-    recipe.field.time_step = 1.2f;
+    recipe.time_step = 1.2f;
     assert_int_equal(ty_fill_make(&recipe, NULL, &sink, &error), TY_BAD_INPUT);
     recipe = small();
     recipe.loop.frames = 0;
@@ -247,7 +247,7 @@ static void impossible_ones_are_refused(void** state)
     ty_status status = ty_fill_make(&recipe, NULL, &sink, &error);
     ty_cancel_clear();
     assert_int_equal(status, TY_INTERRUPTED);
-    for (long i = 0; i < 2; i++) // the field, the plan
+    for (long i = 0; i < 13; i++) // the field, its planes, the plan, the frame
     {
         ty_memory_fail_after(i);
         assert_int_equal(ty_fill_make(&recipe, NULL, &sink, &error), TY_NO_MEMORY);

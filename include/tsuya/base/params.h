@@ -29,6 +29,7 @@ typedef enum ty_param_type
     TY_PARAM_BRIEF_GROUP,  // the same; may be written as the input that its first row is
     TY_PARAM_LIST,         // ty_param_list of structs described by group
     TY_PARAM_POINTS,       // ty_param_list of ty_vec3: a list of [x, y, z]
+    TY_PARAM_POINTS2,      // ty_param_list of ty_vec2: a list of [x, y]
     TY_PARAM_NAMES,        // ty_param_list of ty_param_name: a mapping of names to names
     TY_PARAM_STRINGS,      // ty_param_strings: a list of texts, or one
 } ty_param_type;

@@ -19,6 +19,9 @@ typedef enum ty_product
 typedef struct ty_frame_sink
 {
     ty_status (*put)(void* context, int frame, ty_exr* image, ty_error* error);
+    // Where somebody keeps what a run goes on from: once, at its end or when it is interrupted after a frame. NULL:
+    // nobody does.
+    ty_status (*keep)(void* context, ty_exr* state, ty_error* error);
     void* context;
 } ty_frame_sink;
 
@@ -36,7 +39,8 @@ typedef struct ty_made
     ty_mesh* mesh;           // the same
     ty_frame_sink frames;    // given by the caller
     ty_aggregate_sink film;  // given where the caller wants an aggregate as a film; then there is no aggregate
-    const ty_bytes* state;   // given where the making of an aggregate goes on from one that is kept; else NULL
+    const ty_bytes*
+        state; // given where the making of an aggregate or of frames goes on from one that is kept; else NULL
 } ty_made;
 
 // A kind of recipe. The def struct is described by params; scene/ fills it from YAML.

@@ -292,7 +292,10 @@ typedef struct ty_scene_options
     bool check_only;          // read and verify everything, but make no asset and build no tree
     ty_trace_path trace_path;
     ty_workers* workers; // for generators; NULL = the caller
-    const char* resume;  // of ty_recipe_make: an aggregate whose state is gone on from; NULL = from the beginning
+    // Of ty_recipe_make; NULL = not.
+    const char* resume;  // an aggregate, or the state of a run of frames, that is gone on from
+    const char* state;   // where a run of frames keeps its state, at its end or when it is interrupted
+    const char* picture; // a pattern for frames as pictures (.png) too
 } ty_scene_options;
 
 // path: a scene file, a folder with scene.yaml, or a glTF file, which gets light and a camera where it has none. On

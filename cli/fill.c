@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// `tsuya fill`: the frames of a living pattern, with pictures and the state beside them.
+#include "cli.h"
+#include <stdio.h>
+#include <string.h>
+#include <tsuya/base/file.h>
+#include <tsuya/base/log.h>
+
+static const char *const frame_endings[] = {"exr", "png", NULL}, *const picture_endings[] = {"png", NULL};
+static const char* const state_endings[] = {"exr", NULL};
+
+static ty_status check_pattern(const ty_command* command, const char* pattern, const char* const* endings)
+{
+    ty_error error;
+    char path[TY_PATH_MAX];
+    ty_status status = ty_output_check_ending(command, pattern, endings);
+    if (status != TY_OK)
+        return status;
+    if (!ty_path_is_sequence(pattern))
+        return ty_usage(command, "the output '%s' needs #### where the number of a frame goes", pattern);
+    ty_path_frame(pattern, 1, path);
+    status = ty_output_probe(path, &error); // before minutes of work
+    if (status != TY_OK)
+        ty_log_error(&error);
+    return status;
+}
+
+static ty_status check_state(const ty_command* command, const char* path)
+{
+    ty_error error;
+    ty_status status = ty_output_check_ending(command, path, state_endings);
+    if (status != TY_OK)
+        return status;
+    if (ty_path_is_sequence(path))
+        return ty_usage(command, "the state '%s' is one file: it has no #", path);
+    status = ty_output_probe(path, &error);
+    if (status != TY_OK)
+        ty_log_error(&error);
+    return status;
+}
+
+static ty_status check_outputs(const ty_arguments* arguments)
+{
+    const char* output = ty_argument_text(arguments, "output", NULL);
+    const char* png = ty_argument_text(arguments, "png", NULL);
+    const char* state = ty_argument_text(arguments, "state", NULL);
+    if (!output)
+        return ty_usage(arguments->command, "where to? give -o %s", arguments->command->options[0].value);
+    ty_status status = check_pattern(arguments->command, output, frame_endings);
+    if (status == TY_OK && png)
+        status = check_pattern(arguments->command, png, picture_endings);
+    if (status == TY_OK && state)
+        status = check_state(arguments->command, state);
+    return status;
+}
+
+static ty_status run(const ty_arguments* arguments)
+{
+    static ty_scene_arguments scene_arguments;
+    const char* output = ty_argument_text(arguments, "output", NULL);
+    ty_status status = check_outputs(arguments);
+    if (status == TY_OK)
+        status = ty_scene_arguments_read(arguments, &scene_arguments);
+    if (status != TY_OK)
+        return status;
+    ty_scene_options* options = &scene_arguments.options;
+    options->resume = ty_argument_text(arguments, "resume", NULL);
+    options->state = ty_argument_text(arguments, "state", NULL);
+    options->picture = ty_argument_text(arguments, "png", NULL);
+    if (ty_argument_has(arguments, "also"))
+        ty_scene_arguments_set(&scene_arguments, "outputs=[%.70s]", ty_argument_text(arguments, "also", ""));
+    ty_error_list errors = {0};
+    double start = ty_time_now();
+    status = ty_recipe_make(arguments->positional[0], "fill", output, 0, options, &errors);
+    ty_errors_log(&errors);
+    ty_scene_arguments_term(&scene_arguments);
+    if (status != TY_OK)
+        return status;
+    ty_log(TY_LOG_INFO, "made in %.1f s", ty_time_now() - start);
+    printf("%s\n", output);
+    return ty_output_finish();
+}
+
+static const ty_option options[] = {
+    {"output", 'o', "OUT.####.exr", "the frames to write, from 1; .png for pictures alone"},
+    {"png", 0, "OUT.####.png", "the same as pictures beside them, encoded for an sRGB display"},
+    {"also", 0, "NAMES", "more channels, as the recipe's `outputs`: u,v,mark,trail,distance,mattes"},
+    {"state", 0, "FILE.exr", "where a run keeps its state, at its end or when it is interrupted"},
+    {"resume", 0, "FILE.exr", "go on after the frame whose state that is: the same frames as without a stop"},
+    TY_SCENE_OPTIONS,
+};
+
+const ty_command ty_command_fill = {
+    "fill",
+    "RECIPE -o OUT.####.exr",
+    "make the frames of a living pattern from its recipe",
+    "tsuya fill scenes/still_life/fill.yaml -o 'out/fill.####.exr' --set seed=2",
+    1,
+    1,
+    options,
+    TY_PARAM_COUNT(options),
+    run,
+};

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a recipe to a field before its first step: marks and rates, planes, the start.
+#include "fill_run.h"
+#include <stdio.h>
+#include <string.h>
+#include <tsuya/base/log.h>
+#include <tsuya/base/memory.h>
+
+enum
+{
+    MOST_PIXELS = 32768 // of a side: what is read back as an image
+};
+
+// --- marks ---
+
+static float or_else(float value, float otherwise)
+{
+    return value > 0.0f ? value : otherwise;
+}
+
+// Where u v^2 = F (1 - u) = (F + k) v, v above 0: u (1 - u) = (F + k)^2 / F, which has a solution up to
+// k = sqrt(F) / 2 - F.
+static ty_vec2 plain_state(ty_gray_scott_rates rates)
+{
+    float sum = rates.feed + rates.kill;
+    float square = rates.feed > 0.0f ? 1.0f - 4.0f * sum * sum / rates.feed : -1.0f;
+    if (square < 0.0f)
+        return (ty_vec2){1.0f, 0.0f};
+    float u = 0.5f * (1.0f - sqrtf(square));
+    return (ty_vec2){u, sum / u};
+}
+
+static void marks_take(fill_run* run)
+{
+    const ty_fill_recipe* r = run->recipe;
+    int count;
+    const ty_fill_preset* presets = ty_fill_presets(&count);
+    run->own = (ty_fill_mark){.preset = r->preset,
+                              .feed = r->feed,
+                              .kill = r->kill,
+                              .color = r->high,
+                              .ground = r->low,
+                              .opacity = 1.0f,
+                              .ground_opacity = 1.0f,
+                              .seed = {.radius = 5.0f, .seed = {1}}};
+    run->marks = r->marks.count > 0 ? r->marks.items : &run->own;
+    run->mark_count = r->marks.count > 0 ? r->marks.count : 1;
+    for (int i = 0; i < run->mark_count && i < TY_GRAY_SCOTT_MARKS; i++)
+    {
+        const ty_fill_mark* mark = &run->marks[i];
+        const ty_fill_preset* preset = &presets[mark->preset];
+        run->rates[i] = (ty_gray_scott_rates){or_else(mark->feed, preset->feed), or_else(mark->kill, preset->kill)};
+        run->plain[i] = plain_state(run->rates[i]);
+        run->varies = run->varies || mark->seed.jitter > 0.0f;
+    }
+    run->varies = run->varies || r->variation > 0.0f;
+    run->level = or_else(r->level, run->plain[0].y > 0.0f ? 0.5f * run->plain[0].y : 0.15f);
+}
+
+int fill_mark_find(const fill_run* run, const char* name, const char* key, ty_error* error)
+{
+    int number, length = 0;
+    for (int i = 0; i < run->mark_count; i++)
+        if (run->marks[i].name && strcmp(run->marks[i].name, name) == 0)
+            return i;
+    if (sscanf(name, "%d%n", &number, &length) == 1 && !name[length] && number >= 0 && number < run->mark_count)
+        return number;
+    char names[512] = "";
+    for (int i = 0; i < run->mark_count; i++)
+    {
+        size_t used = strlen(names);
+        const char* text = run->marks[i].name ? run->marks[i].name : "";
+        snprintf(names + used, sizeof names - used, "%s%d%s%.40s", i > 0 ? ", " : "", i, *text ? " " : "", text);
+    }
+    (void)ty_error_set(error, TY_BAD_INPUT, "%s: no mark '%.100s' in the table; it has %s", key, name, names);
+    return -1;
+}
+
+static ty_status marks_check(const fill_run* run, ty_error* error)
+{
+    if (run->mark_count > TY_GRAY_SCOTT_MARKS)
+        return ty_error_set(error, TY_BAD_INPUT, "marks: %d rows; a table has at most %d", run->mark_count,
+                            TY_GRAY_SCOTT_MARKS);
+    for (int i = 0; i < run->mark_count; i++)
+        for (int j = 0; j < i; j++)
+            if (run->marks[i].name && run->marks[j].name && strcmp(run->marks[i].name, run->marks[j].name) == 0)
+                return ty_error_set(error, TY_BAD_INPUT, "marks[%d].name: '%.100s' is the name of mark %d already", i,
+                                    run->marks[i].name, j);
+    for (int i = 0; i < run->mark_count; i++)
+        if (run->marks[i].name && strcmp(run->marks[i].name, "closed") == 0)
+            return ty_error_set(error, TY_BAD_INPUT, "marks[%d].name: 'closed' is what closed cells are called", i);
+    return TY_OK;
+}
+
+// --- the recipe ---
+
+static ty_status outputs_read(fill_run* run, ty_error* error)
+{
+    static const char* const names[] = {"u", "v", "mark", "trail", "distance", "mattes"};
+    bool* const flags[] = {&run->outputs.u,     &run->outputs.v,        &run->outputs.mark,
+                           &run->outputs.trail, &run->outputs.distance, &run->outputs.mattes};
+    for (int i = 0; i < run->recipe->outputs.count; i++)
+    {
+        int k = 0;
+        const char* name = run->recipe->outputs.items[i];
+        while (k < 6 && strcmp(names[k], name) != 0)
+            k++;
+        if (k == 6)
+            return ty_error_set(error, TY_BAD_INPUT, "outputs: '%.100s' is none of u, v, mark, trail, distance, mattes",
+                                name);
+        *flags[k] = true;
+    }
+    return TY_OK;
+}
+
+static ty_status loop_check(const ty_fill_recipe* r, ty_error* error)
+{
+    if (r->loop.span > r->steps)
+        return ty_error_set(error, TY_BAD_INPUT, "loop.span: %d; before step 0 there is nothing: at most %d",
+                            r->loop.span, r->steps);
+    if (r->loop.frames < 1)
+        return ty_error_set(error, TY_BAD_INPUT, "loop.frames: %d; a loop has at least 1", r->loop.frames);
+    if (r->events.count > 0)
+        return ty_error_set(error, TY_BAD_INPUT, "events: a loop has none; they need run.frames");
+    if (r->autos.count > 0)
+        return ty_error_set(error, TY_BAD_INPUT, "auto: a loop has none; these marks need run.frames");
+    return TY_OK;
+}
+
+static ty_status recipe_check(const fill_run* run, ty_error* error)
+{
+    const ty_fill_recipe* r = run->recipe;
+    if (!(r->tone[1] > r->tone[0]))
+        return ty_error_set(error, TY_BAD_INPUT, "tone: [%g, %g]; the second lies above the first", (double)r->tone[0],
+                            (double)r->tone[1]);
+    if (r->stencil != 0 && r->stencil != 5 && r->stencil != 9)
+        return ty_error_set(error, TY_BAD_INPUT, "stencil: %d; it has 5 or 9 points, or 0 for the convention's",
+                            r->stencil);
+    for (int i = 0; i < 2; i++)
+        if ((int64_t)r->cells[i] * r->scale > MOST_PIXELS)
+            return ty_error_set(error, TY_BAD_INPUT, "scale: %d; %d cells become more than %d pixels", r->scale,
+                                r->cells[i], MOST_PIXELS);
+    if (r->start == TY_PATTERN_START_PLAIN && run->plain[0].y == 0.0f)
+        ty_log(TY_LOG_WARNING,
+               "start: plain; with feed %g there is a plain state up to kill %.5f, not with %g: it begins empty",
+               (double)run->rates[0].feed, (double)(0.5f * sqrtf(run->rates[0].feed) - run->rates[0].feed),
+               (double)run->rates[0].kill);
+    return r->run.frames > 0 ? TY_OK : loop_check(r, error);
+}
+
+// --- planes ---
+
+static ty_status planes_make(fill_run* run, ty_error* error)
+{
+    size_t cells = fill_cells(run);
+    int keys = run->recipe->events.count + 2 * TY_GRAY_SCOTT_MARKS;
+    bool trail = run->outputs.trail;
+    const ty_fill_auto* autos = run->recipe->autos.items;
+    run->trail_threshold = 0.1f;
+    for (int i = run->recipe->autos.count - 1; i >= 0; i--)
+        if (autos[i].where == TY_FILL_WHERE_TRAIL)
+        {
+            run->trail_threshold = autos[i].threshold;
+            trail = true;
+        }
+    run->closed = TY_TRY_ALLOC(uint8_t, cells);
+    run->v = TY_TRY_ALLOC(float, cells);
+    run->cover = TY_TRY_ALLOC(float, cells);
+    run->near_x = TY_TRY_ALLOC(float, cells);
+    run->near_y = TY_TRY_ALLOC(float, cells);
+    run->trail = trail ? TY_TRY_ALLOC(float, cells) : NULL;
+    run->before = trail ? TY_TRY_ALLOC(float, cells) : NULL;
+    run->noise = run->recipe->variation > 0.0f ? TY_TRY_ALLOC(float, cells) : NULL;
+    run->events = TY_TRY_ALLOC(ty_plane_file, run->recipe->events.count);
+    run->keys = ty_try_alloc((size_t)keys, FILL_KEY);
+    bool complete = run->closed && run->v && run->cover && run->near_x && run->near_y && run->events && run->keys;
+    complete = complete && (!trail || (run->trail && run->before)) && (run->recipe->variation == 0.0f || run->noise);
+    for (size_t i = 0; complete && trail && i < cells; i++)
+        run->trail[i] = -1.0f;
+    return complete ? TY_OK : ty_error_set(error, TY_NO_MEMORY, "no memory for %d x %d cells", run->width, run->height);
+}
+
+// Values of a lattice that wraps, blended by cubics: -1..1, smooth.
+static float lattice_value(const float* lattice, int nx, int ny, float x, float y)
+{
+    int i = (int)floorf(x), j = (int)floorf(y);
+    float fx = ty_smoothstep(x - (float)i), fy = ty_smoothstep(y - (float)j);
+    const float *row = lattice + (j % ny) * nx, *next = lattice + ((j + 1) % ny) * nx;
+    int a = i % nx, b = (i + 1) % nx;
+    return ty_lerp(ty_lerp(row[a], row[b], fx), ty_lerp(next[a], next[b], fx), fy);
+}
+
+static void noise_fill(fill_run* run)
+{
+    const ty_fill_recipe* r = run->recipe;
+    int w = run->width, h = run->height;
+    int nx = (int)ty_max(1.0f, floorf((float)w / r->variation_size + 0.5f));
+    int ny = (int)ty_max(1.0f, floorf((float)h / r->variation_size + 0.5f));
+    float* lattice = TY_ALLOC(float, nx* ny);
+    ty_rng rng = ty_rng_make(r->seed, 0x66656564, 0);
+    for (int i = 0; i < nx * ny; i++)
+        lattice[i] = ty_rng_range(&rng, -1.0f, 1.0f);
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++)
+            run->noise[fill_cell(run, x, y)] =
+                lattice_value(lattice, nx, ny, (float)(x * nx) / (float)w, (float)(y * ny) / (float)h);
+    ty_free(lattice);
+}
+
+static float cell_noise(ty_seed seed, size_t cell)
+{
+    ty_rng rng = ty_rng_make(seed, 0x6a697474, (uint64_t)cell);
+    return ty_rng_range(&rng, -1.0f, 1.0f);
+}
+
+ty_status fill_vary(const fill_run* run, ty_error* error)
+{
+    if (!run->varies)
+        return TY_OK;
+    float* feed = run->cover; // nobody covers anything now
+    for (int y = 0; y < run->height; y++)
+    {
+        const uint8_t* marks = ty_gray_scott_marks(run->field, y);
+        for (int x = 0; x < run->width; x++)
+        {
+            int mark = marks[x] & (TY_GRAY_SCOTT_MARKS - 1);
+            const ty_fill_seeding* seed = &run->marks[mark].seed;
+            size_t at = fill_cell(run, x, y);
+            float more = run->noise ? run->recipe->variation * run->noise[at] : 0.0f;
+            if (seed->jitter > 0.0f)
+                more += seed->jitter * cell_noise(seed->seed, at);
+            feed[at] = run->rates[mark].feed * more;
+        }
+    }
+    return ty_gray_scott_vary(run->field, feed, NULL, error);
+}
+
+// --- the field ---
+
+static void drops_fall(const ty_fill_recipe* recipe, ty_gray_scott* field)
+{
+    float w = (float)recipe->cells[0], h = (float)recipe->cells[1];
+    ty_rng place = ty_rng_make(recipe->seed, 0x64726f70, 0);
+    for (int i = 0; i < recipe->drops.count; i++)
+    {
+        ty_rng rng = ty_rng_make(recipe->seed, 0x64726f70, 1 + (uint64_t)i);
+        float x = ty_rng_range(&place, 0.0f, w);
+        float up = ty_lerp(recipe->drops.area[0], recipe->drops.area[1], ty_rng_float(&place));
+        ty_gray_scott_drop(field, x, (1.0f - up) * (h - 1.0f), recipe->drops.radius, &rng);
+    }
+}
+
+static ty_status field_make(fill_run* run, ty_error* error)
+{
+    const ty_fill_recipe* r = run->recipe;
+    int count;
+    const ty_fill_convention* convention = &ty_fill_conventions(&count)[r->convention];
+    ty_gray_scott_def def = ty_gray_scott_def_default();
+    def.width = run->width;
+    def.height = run->height;
+    def.diffusion_u = or_else(r->diffusion_u, convention->diffusion_u);
+    def.diffusion_v = or_else(r->diffusion_v, convention->diffusion_v);
+    def.time_step = or_else(r->time_step, convention->time_step);
+    def.stencil = r->stencil ? r->stencil : convention->stencil;
+    def.wrap_x = run->wrap_x;
+    def.wrap_y = run->wrap_y;
+    memcpy(def.rates, run->rates, sizeof def.rates);
+    def.rate_count = run->mark_count;
+    run->def = def;
+    return ty_gray_scott_create(&def, &run->field, error);
+}
+
+static void field_start(const fill_run* run)
+{
+    if (run->recipe->start == TY_PATTERN_START_DROPS)
+        drops_fall(run->recipe, run->field);
+    if (run->recipe->start != TY_PATTERN_START_PLAIN)
+        return;
+    for (int y = 0; y < run->height; y++)
+    {
+        float *u = ty_gray_scott_u(run->field, y), *v = ty_gray_scott_v(run->field, y);
+        for (int x = 0; x < run->width; x++)
+        {
+            u[x] = run->plain[0].x;
+            v[x] = run->plain[0].y;
+        }
+    }
+}
+
+ty_status fill_run_init(fill_run* run, const ty_fill_recipe* recipe, ty_workers* workers, ty_error* error)
+{
+    *run = (fill_run){.recipe = recipe,
+                      .workers = workers,
+                      .width = recipe->cells[0],
+                      .height = recipe->cells[1],
+                      .wrap_x = recipe->tile != TY_PATTERN_TILE_NONE,
+                      .wrap_y = recipe->tile == TY_PATTERN_TILE_BOTH,
+                      .steps = (double)recipe->run.steps};
+    marks_take(run);
+    ty_status status = marks_check(run, error);
+    if (status == TY_OK)
+        status = recipe_check(run, error);
+    if (status == TY_OK)
+        status = outputs_read(run, error);
+    if (status == TY_OK)
+        status = field_make(run, error);
+    if (status == TY_OK)
+        status = planes_make(run, error);
+    if (status == TY_OK)
+        status = fill_events_check(run, error);
+    if (status == TY_OK)
+        status = fill_files_open(run, error);
+    if (status == TY_OK)
+        status = fill_solve_steps(run, error);
+    if (status != TY_OK)
+        return status;
+    field_start(run);
+    if (run->noise)
+        noise_fill(run);
+    return fill_vary(run, error);
+}
+
+void fill_run_term(fill_run* run)
+{
+    ty_gray_scott_destroy(run->field);
+    ty_color_destroy(run->color);
+    void* const owned[] = {run->closed, run->v,      run->trail, run->before, run->cover,
+                           run->near_x, run->near_y, run->noise, run->events, run->keys};
+    for (int i = 0; i < (int)(sizeof owned / sizeof *owned); i++)
+        ty_free(owned[i]);
+}
