@@ -73,7 +73,7 @@ static bool nearest_place(const ty_pile* pile, const pair* p, contact* nearest)
     for (int i = p->first; i < p->first + p->count; i++)
     {
         contact c = {.touch = i};
-        if (pile_contact_place(pile, p, &pile->touches[i], nearest->gap, &c))
+        if (pile_contact_place(pile, p, &pile->near.touches[i], nearest->gap, &c))
             *nearest = c;
     }
     return nearest->gap < TY_FLOAT_MAX;
@@ -87,7 +87,7 @@ void pile_bridge_prepare(ty_pile* pile, pair* p, bool touching)
     p->bridged |= touching;
     if ((!p->bridged && p->active == 0) || !nearest_place(pile, p, c))
         return;
-    const touch* t = &pile->touches[c->touch];
+    const touch* t = &pile->near.touches[c->touch];
     float a = pile_balls(pile, p->a)[t->a].radius, b = p->b >= 0 ? pile_balls(pile, p->b)[t->b].radius : TY_FLOAT_MAX;
     float radius = ty_min(a, b), mean = 2.0f * a / (1.0f + a / b); // 2 a b / (a + b); of a wall 2 a
     if (c->gap > ty_bridge_end(def, radius))

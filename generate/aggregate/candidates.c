@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grid, built by counting; its cells stay within a few for each body. Colours.
+// The grid, built by counting; its cells stay within a few for each body. Blocks.
 #include "candidates.h"
 #include <string.h>
 
@@ -7,6 +7,9 @@ enum
 {
     CELLS_EACH = 8, // of a body, at most
     CELLS_LEAST = 1 << 15,
+    CLASS_BLOCKS = 20,
+    BLOCK_LEAST = 24, // bodies, on the mean
+    BLOCK_MOST = 96,
 };
 
 void list_reserve(void** array, int* capacity, int needed, size_t size)
@@ -45,8 +48,8 @@ static int64_t size_choose(body_grid* g, ty_vec3 extent, int count)
 
 body_grid body_grid_create(const void* bodies, size_t offset, size_t stride, int count, float cell)
 {
-    body_grid g = {.cell = cell};
     const char* first = (const char*)bodies + offset;
+    body_grid g = {.cell = cell, .centers = first, .stride = stride, .count = count};
     ty_bounds b = ty_bounds_empty();
     for (int i = 0; i < count; i++)
         b = ty_bounds_add(b, *(const ty_vec3*)(first + (size_t)i * stride));
@@ -120,31 +123,142 @@ int body_grid_find(const body_grid* g, ty_vec3 p, body_hold_fn* hold, const void
     return -1;
 }
 
-// --- colours ---
+// --- blocks ---
 
-void pairs_color(const void* pairs, size_t stride, int count, int body_count, int* order, int first[PAIR_COLORS + 2])
+// Cells of space for blocks, at least as long as those of the grid.
+typedef struct layout
 {
-    uint64_t* used = TY_ALLOC(uint64_t, body_count);
-    uint8_t* color = TY_ALLOC(uint8_t, count);
-    int next[PAIR_COLORS + 2] = {0};
-    for (int i = 0; i < count; i++)
+    const body_grid* grid;
+    float side;
+    int half[3]; // cells of one parity along each axis
+} layout;
+
+// A block wants so few bodies that its contacts fit a core's own cache, and a class so many blocks that cores share
+// them evenly.
+static layout layout_make(const body_grid* g)
+{
+    const float wanted = ty_clamp((float)g->count / (8.0f * CLASS_BLOCKS), BLOCK_LEAST, BLOCK_MOST);
+    int64_t cells = (int64_t)g->size[0] * g->size[1] * g->size[2], taken = 0;
+    for (int64_t c = 0; c < cells; c++)
+        taken += g->start[c + 1] > g->start[c];
+    layout l = {.grid = g, .side = g->cell};
+    float each = (float)g->count / (float)(taken > 0 ? taken : 1);
+    if (each < wanted)
+        l.side *= ty_pow(wanted / each, 1.0f / 3.0f);
+    for (int axis = 0; axis < 3; axis++)
+        l.half[axis] = (int)((float)g->size[axis] * g->cell / l.side) / 2 + 1;
+    return l;
+}
+
+static void cell_at(const layout* l, int body, int out[3])
+{
+    const body_grid* g = l->grid;
+    ty_vec3 p = ty_sub(*(const ty_vec3*)(g->centers + (size_t)body * g->stride), g->low);
+    const float along[3] = {p.x, p.y, p.z};
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = (int)ty_clamp(along[axis] / l->side, 0.0f, (float)(2 * l->half[axis] - 1));
+}
+
+// Class by class, then along x, y and z.
+static int block_index(const layout* l, const int* pair)
+{
+    int a[3], b[3], parity = 0, at[3];
+    cell_at(l, pair[0], a);
+    cell_at(l, pair[1], b);
+    for (int axis = 0; axis < 3; axis++)
+    {
+        int low = a[axis] < b[axis] ? a[axis] : b[axis];
+        parity |= (low & 1) << axis;
+        at[axis] = low >> 1;
+    }
+    return ((parity * l->half[2] + at[2]) * l->half[1] + at[1]) * l->half[0] + at[0];
+}
+
+static void block_push(pair_blocks* b, int first)
+{
+    list_reserve((void**)&b->first, &b->capacity, b->count + 2, sizeof(int));
+    b->first[b->count++] = first;
+}
+
+void pair_blocks_make(pair_blocks* b, const body_grid* g, const void* pairs, size_t stride, int count, int* order)
+{
+    enum
+    {
+        WALLS_EACH = 256, // wall pairs of a block: they share no body at all
+    };
+    layout l = layout_make(g);
+    int each = l.half[0] * l.half[1] * l.half[2], cells = 8 * each, walls = count;
+    int *next = TY_ALLOC(int, cells + 1), *index = TY_ALLOC(int, count);
+    for (int i = 0; i < count && walls == count; i++)
     {
         const int* p = (const int*)((const char*)pairs + (size_t)i * stride);
-        color[i] = PAIR_COLORS;
-        if (p[1] >= 0)
-        {
-            uint64_t open = ~(used[p[0]] | used[p[1]] | 1ull << (PAIR_COLORS - 1)) & ((1ull << PAIR_COLORS) - 1);
-            color[i] = (uint8_t)(open ? __builtin_ctzll(open) : PAIR_COLORS - 1);
-            used[p[0]] |= 1ull << color[i];
-            used[p[1]] |= 1ull << color[i];
-        }
-        next[color[i] + 1]++;
+        if (p[1] < 0)
+            walls = i;
+        else
+            next[(index[i] = block_index(&l, p)) + 1]++;
     }
-    for (int c = 0; c <= PAIR_COLORS; c++)
+    b->count = 0;
+    for (int c = 0; c < cells; c++)
+    {
+        if (c % each == 0)
+            b->class_first[c / each] = b->count;
+        if (next[c + 1] > 0)
+            block_push(b, next[c]);
         next[c + 1] += next[c];
-    memcpy(first, next, sizeof next);
-    for (int i = 0; i < count; i++)
-        order[next[color[i]]++] = i;
-    ty_free(used);
-    ty_free(color);
+    }
+    for (int i = 0; i < walls; i++)
+        order[next[index[i]]++] = i;
+    b->class_first[BLOCK_CLASSES - 1] = b->count;
+    for (int i = walls; i < count; i++)
+    {
+        order[i] = i;
+        if ((i - walls) % WALLS_EACH == 0)
+            block_push(b, i);
+    }
+    b->class_first[BLOCK_CLASSES] = b->count;
+    list_reserve((void**)&b->first, &b->capacity, b->count + 1, sizeof(int));
+    b->first[b->count] = count;
+    ty_free(next);
+    ty_free(index);
+}
+
+typedef struct blocks_run
+{
+    const pair_blocks* blocks;
+    int from;
+    block_fn* fn;
+    void* context;
+} blocks_run;
+
+static void blocks_range(void* context, int64_t begin, int64_t end, int worker)
+{
+    (void)worker;
+    const blocks_run* r = context;
+    for (int i = r->from + (int)begin; i < r->from + (int)end; i++)
+        r->fn(r->context, i, r->blocks->first[i], r->blocks->first[i + 1]);
+}
+
+static void blocks_share(const pair_blocks* b, int from, int to, int grain, ty_workers* workers, block_fn* fn,
+                         void* context)
+{
+    enum
+    {
+        WORTH_SHARING = 384, // pairs; below, waking a thread costs more than it gives
+    };
+    blocks_run r = {b, from, fn, context};
+    if (from == to)
+        return;
+    bool share = b->first[to] - b->first[from] >= WORTH_SHARING;
+    ty_parallel_all(share ? workers : NULL, to - from, share ? grain : to - from, blocks_range, &r);
+}
+
+void pair_blocks_sweep(const pair_blocks* b, ty_workers* workers, block_fn* fn, void* context)
+{
+    for (int c = 0; c < BLOCK_CLASSES; c++)
+        blocks_share(b, b->class_first[c], b->class_first[c + 1], 1, workers, fn, context);
+}
+
+void pair_blocks_each(const pair_blocks* b, ty_workers* workers, block_fn* fn, void* context)
+{
+    blocks_share(b, 0, b->count, 4, workers, fn, context);
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contact candidates of a pile: found on a grid, listed in id order with the impulses they keep, coloured in that
-// order.
+// Contact candidates of a pile: found on a grid, put into blocks with the impulses they keep.
 #include "pile_state.h"
 #include <string.h>
 
@@ -15,7 +14,7 @@ typedef struct found
     int pair_count, pair_capacity;
     touch* touches;
     int touch_count, touch_capacity;
-    int first_pair, first_touch; // of the piece in the whole
+    int first_pair; // of the piece in the whole
 } found;
 
 enum
@@ -23,42 +22,61 @@ enum
     SEARCH_PIECE = 512, // bodies that are searched at a time
 };
 
-static void touch_push(found* f, int a, int b)
+static void touch_push(found* f, int a, int b, float gap)
 {
     list_reserve((void**)&f->touches, &f->touch_capacity, f->touch_count + 1, sizeof(touch));
-    f->touches[f->touch_count++] = (touch){.a = (uint8_t)a, .b = (uint8_t)b};
-}
-
-static void pair_push(found* f, int a, int b, int first, bool bridged)
-{
-    if (f->touch_count == first)
-        return;
-    list_reserve((void**)&f->pairs, &f->pair_capacity, f->pair_count + 1, sizeof(pair));
-    f->pairs[f->pair_count++] =
-        (pair){.a = a, .b = b, .first = first, .count = f->touch_count - first, .bridged = bridged};
+    float units = ty_clamp(gap * (1.0f / PILE_GAP_UNIT), 0.0f, PILE_GAP_MOST);
+    f->touches[f->touch_count++] = (touch){.a = (uint8_t)a, .b = (uint8_t)b, .gap = (uint8_t)units};
 }
 
 // The impulses of a pair's touches that were candidates before; both lists ascend in (a, b).
 static void impulses_keep(const ty_pile* pile, found* f, int first, const pair* old)
 {
-    const touch *from = pile->old_touches + old->first, *end = from + old->count;
+    const touch *from = pile->former.touches + old->first, *end = from + old->count;
     for (int t = first; t < f->touch_count; t++)
     {
         touch* to = &f->touches[t];
         while (from < end && (from->a < to->a || (from->a == to->a && from->b < to->b)))
             from++;
         if (from < end && from->a == to->a && from->b == to->b)
-            *to = *from;
+        {
+            to->normal_impulse = from->normal_impulse;
+            to->tangent_impulse = from->tangent_impulse;
+        }
     }
 }
 
-// The first old pair from begin to end whose first body is at least a.
+// known: the same pair before, or NULL.
+static void pair_push(const ty_pile* pile, found* f, int a, int b, int first, const pair* known)
+{
+    if (f->touch_count == first)
+        return;
+    pair p = {.a = a, .b = b, .first = first, .count = (uint16_t)(f->touch_count - first), .gap = PILE_GAP_MOST};
+    for (int i = first; i < f->touch_count; i++)
+        p.gap = f->touches[i].gap < p.gap ? f->touches[i].gap : p.gap;
+    if (known)
+    {
+        impulses_keep(pile, f, first, known);
+        p.loaded = known->loaded;
+        p.bridged = known->bridged;
+    }
+    list_reserve((void**)&f->pairs, &f->pair_capacity, f->pair_count + 1, sizeof(pair));
+    f->pairs[f->pair_count++] = p;
+}
+
+// The pair at a place of the former ones in their order.
+static const pair* former_at(const ty_pile* pile, int i)
+{
+    return &pile->former.pairs[pile->former.places[i]];
+}
+
+// The first of them from begin to end whose first body is at least a.
 static int old_pair_at(const ty_pile* pile, int begin, int end, int a)
 {
     while (begin < end)
     {
         int middle = begin + (end - begin) / 2;
-        if (pile->old_pairs[middle].a < a)
+        if (former_at(pile, middle)->a < a)
             begin = middle + 1;
         else
             end = middle;
@@ -104,8 +122,11 @@ static void touches_find(const ty_pile* pile, found* f, int a, int b, float marg
         if (ty_length_sqr(ty_sub(p[i].center, other->position)) > ty_sqr(radius + p[i].radius))
             continue;
         for (int k = 0; k < of_b; k++)
-            if (ty_length_sqr(ty_sub(p[i].center, q[k].center)) < ty_sqr(p[i].radius + q[k].radius + margin))
-                touch_push(f, i, k);
+        {
+            float square = ty_length_sqr(ty_sub(p[i].center, q[k].center)), reach = p[i].radius + q[k].radius;
+            if (square < ty_sqr(reach + margin))
+                touch_push(f, i, k, sqrtf(square) - reach);
+        }
     }
 }
 
@@ -115,6 +136,7 @@ typedef struct search
     body_grid grid;
     ty_ball* spheres; // about the bodies, by half their reach wider
     found* pieces;
+    pair* listed; // all, in id order
 } search;
 
 static bool spheres_meet(const void* owner, int i, int j)
@@ -142,8 +164,7 @@ static void pairs_find(void* context, int64_t begin, int64_t end, int worker)
     const search* s = context;
     const ty_pile* pile = s->pile;
     found* f = &s->pieces[begin / SEARCH_PIECE];
-    const pair* o = pile->old_pairs;
-    int old = old_pair_at(pile, 0, pile->old_wall_first, (int)begin);
+    int old = old_pair_at(pile, 0, pile->former.wall_first, (int)begin);
     body_list near = {0};
     for (int i = (int)begin; i < (int)end; i++)
     {
@@ -152,12 +173,15 @@ static void pairs_find(void* context, int64_t begin, int64_t end, int worker)
         {
             int j = near.at[n], first = f->touch_count;
             touches_find(pile, f, i, j, 0.5f * (pile->poses[i].reach + pile->poses[j].reach));
-            while (old < pile->old_wall_first && (o[old].a < i || (o[old].a == i && o[old].b < j)))
-                old++;
-            bool known = old < pile->old_wall_first && o[old].a == i && o[old].b == j;
-            if (known)
-                impulses_keep(pile, f, first, &o[old]);
-            pair_push(f, i, j, first, known && o[old].bridged);
+            const pair* o = NULL;
+            for (; old < pile->former.wall_first; old++)
+            {
+                o = former_at(pile, old);
+                if (o->a > i || (o->a == i && o->b >= j))
+                    break;
+            }
+            bool known = old < pile->former.wall_first && o->a == i && o->b == j;
+            pair_push(pile, f, i, j, first, known ? o : NULL);
         }
     }
     ty_free(near.at);
@@ -172,11 +196,13 @@ static void body_walls_find(const ty_pile* pile, found* f, int i)
     for (int k = 0; k < ball_count; k++)
     {
         ty_vec3 n;
-        for (int w = 0; w < walls; w++)
-            if (pile_wall(pile, w, balls[k].center, &n) < balls[k].radius + margin)
-                touch_push(f, k, w);
-        if (pile->lid && pile_wall(pile, PILE_LID, balls[k].center, &n) < balls[k].radius + margin)
-            touch_push(f, k, PILE_LID);
+        for (int w = 0; w <= walls; w++)
+        {
+            int wall = w < walls ? w : PILE_LID;
+            float gap = w < walls || pile->lid ? pile_wall(pile, wall, balls[k].center, &n) - balls[k].radius : margin;
+            if (gap < margin)
+                touch_push(f, k, wall, gap);
+        }
     }
 }
 
@@ -186,56 +212,97 @@ static void walls_find(void* context, int64_t begin, int64_t end, int worker)
     const search* s = context;
     const ty_pile* pile = s->pile;
     found* f = &s->pieces[begin / SEARCH_PIECE];
-    int old = old_pair_at(pile, pile->old_wall_first, pile->old_pair_count, (int)begin);
+    int old = old_pair_at(pile, pile->former.wall_first, pile->former.pair_count, (int)begin);
     for (int i = (int)begin; i < (int)end; i++)
     {
         int first = f->touch_count;
         body_walls_find(pile, f, i);
-        while (old < pile->old_pair_count && pile->old_pairs[old].a < i)
+        while (old < pile->former.pair_count && former_at(pile, old)->a < i)
             old++;
-        bool known = old < pile->old_pair_count && pile->old_pairs[old].a == i;
-        if (known)
-            impulses_keep(pile, f, first, &pile->old_pairs[old]);
-        pair_push(f, i, PILE_WALL, first, known && pile->old_pairs[old].bridged);
+        bool known = old < pile->former.pair_count && former_at(pile, old)->a == i;
+        pair_push(pile, f, i, PILE_WALL, first, known ? former_at(pile, old) : NULL);
     }
 }
 
-static void pieces_join(const search* s, int64_t count)
+// --- pieces to blocks ---
+
+// All pairs in id order.
+static void pieces_join(void* context, int64_t begin, int64_t end, int worker)
 {
-    for (int64_t k = 0; k < count; k++)
+    (void)worker;
+    const search* s = context;
+    for (int64_t k = begin; k < end; k++)
+    {
+        const found* f = &s->pieces[k];
+        if (f->pair_count > 0)
+            memcpy(s->listed + f->first_pair, f->pairs, (size_t)f->pair_count * sizeof(pair));
+    }
+}
+
+// Touches follow each other as their pairs do.
+static void touches_place(const search* s, const int* order)
+{
+    candidates* near = &s->pile->near;
+    int first = 0;
+    for (int i = 0; i < near->pair_count; i++)
+    {
+        near->places[order[i]] = i;
+        near->pairs[i] = s->listed[order[i]];
+        near->pairs[i].first = first;
+        first += near->pairs[i].count;
+    }
+}
+
+static void pieces_scatter(void* context, int64_t begin, int64_t end, int worker)
+{
+    (void)worker;
+    const search* s = context;
+    const candidates* near = &s->pile->near;
+    for (int64_t k = begin; k < end; k++)
     {
         found* f = &s->pieces[k];
         for (int i = 0; i < f->pair_count; i++)
         {
-            pair* p = &s->pile->pairs[f->first_pair + i];
-            *p = f->pairs[i];
-            p->first += f->first_touch;
+            const pair *from = &f->pairs[i], *to = &near->pairs[near->places[f->first_pair + i]];
+            memcpy(near->touches + to->first, f->touches + from->first, from->count * sizeof(touch));
         }
-        if (f->touch_count > 0)
-            memcpy(s->pile->touches + f->first_touch, f->touches, (size_t)f->touch_count * sizeof(touch));
         ty_free(f->pairs);
         ty_free(f->touches);
-        *f = (found){0};
     }
 }
 
-// Searches all bodies in pieces and puts what they find behind what is there, in the pieces' order.
-static void search_run(search* s, ty_workers* workers, ty_range_fn* fn)
+static void search_run(search* s, ty_workers* workers)
 {
     ty_pile* pile = s->pile;
-    int64_t count = (pile->count + SEARCH_PIECE - 1) / SEARCH_PIECE;
+    candidates* near = &pile->near;
+    int64_t pieces = (pile->count + SEARCH_PIECE - 1) / SEARCH_PIECE;
+    s->pieces = TY_ALLOC(found, 2 * pieces); // the second half are those of the walls
     // One piece at a time on the caller too: it tells its piece by its first body.
-    ty_workers* shared = count > 1 ? workers : NULL;
-    ty_parallel_all(shared, pile->count, SEARCH_PIECE, fn, s);
-    for (int64_t k = 0; k < count; k++)
+    ty_workers* shared = pieces > 1 ? workers : NULL;
+    ty_parallel_all(shared, pile->count, SEARCH_PIECE, pairs_find, s);
+    s->pieces += pieces;
+    ty_parallel_all(shared, pile->count, SEARCH_PIECE, walls_find, s);
+    s->pieces -= pieces;
+    near->pair_count = near->touch_count = near->wall_first = 0;
+    for (int64_t k = 0; k < 2 * pieces; k++)
     {
         found* f = &s->pieces[k];
-        f->first_pair = pile->pair_count, f->first_touch = pile->touch_count;
-        pile->pair_count += f->pair_count, pile->touch_count += f->touch_count;
+        f->first_pair = near->pair_count;
+        near->pair_count += f->pair_count, near->touch_count += f->touch_count;
+        near->wall_first += k < pieces ? f->pair_count : 0;
     }
-    list_reserve((void**)&pile->pairs, &pile->pair_capacity, pile->pair_count, sizeof(pair));
-    list_reserve((void**)&pile->touches, &pile->touch_capacity, pile->touch_count, sizeof(touch));
-    pieces_join(s, count);
+    list_reserve((void**)&near->pairs, &near->pair_capacity, near->pair_count, sizeof(pair));
+    list_reserve((void**)&near->places, &near->place_capacity, near->pair_count, sizeof(int));
+    list_reserve((void**)&near->touches, &near->touch_capacity, near->touch_count, sizeof(touch));
+    int* order = TY_ALLOC(int, near->pair_count);
+    s->listed = TY_ALLOC(pair, near->pair_count);
+    ty_parallel_all(shared, 2 * pieces, 1, pieces_join, s);
+    pair_blocks_make(&pile->blocks, &s->grid, s->listed, sizeof(pair), near->pair_count, order);
+    touches_place(s, order);
+    ty_parallel_all(shared, 2 * pieces, 1, pieces_scatter, s);
+    ty_free(order);
+    ty_free(s->listed);
+    ty_free(s->pieces);
 }
 
 static void candidates_find(ty_pile* pile, ty_workers* workers)
@@ -246,33 +313,9 @@ static void candidates_find(ty_pile* pile, ty_workers* workers)
     search s = {.pile = pile, .spheres = spheres_make(pile)};
     s.grid = body_grid_create(pile->bodies, offsetof(ty_body, position), sizeof(ty_body), pile->count,
                               2.0f * pile->max_radius * pile->growth + widest);
-    s.pieces = TY_ALLOC(found, (pile->count + SEARCH_PIECE - 1) / SEARCH_PIECE);
-    search_run(&s, workers, pairs_find);
-    pile->wall_first = pile->pair_count;
-    search_run(&s, workers, walls_find);
-    ty_free(s.pieces);
+    search_run(&s, workers);
     ty_free(s.spheres);
     body_grid_destroy(&s.grid);
-}
-
-// --- colours ---
-
-static void pairs_order(ty_pile* pile)
-{
-    list_reserve((void**)&pile->order, &pile->order_capacity, pile->pair_count, sizeof(int));
-    pairs_color(pile->pairs, sizeof *pile->pairs, pile->pair_count, pile->count, pile->order, pile->color_first);
-}
-
-static void lists_swap(ty_pile* pile)
-{
-    pair* pairs = pile->old_pairs;
-    touch* touches = pile->old_touches;
-    int pair_capacity = pile->old_pair_capacity, touch_capacity = pile->old_touch_capacity;
-    pile->old_pairs = pile->pairs, pile->old_pair_capacity = pile->pair_capacity;
-    pile->old_touches = pile->touches, pile->old_touch_capacity = pile->touch_capacity;
-    pile->old_pair_count = pile->pair_count, pile->old_wall_first = pile->wall_first;
-    pile->pairs = pairs, pile->pair_capacity = pair_capacity, pile->pair_count = 0;
-    pile->touches = touches, pile->touch_capacity = touch_capacity, pile->touch_count = 0;
 }
 
 // m/s, of a point of the body at most.
@@ -305,6 +348,7 @@ void pile_detect(ty_pile* pile, float margin, ty_workers* workers)
         pile->poses[i].reach = ty_min(ty_max(margin, ahead * body_speed(pile, i)), margin + radius);
         pile->poses[i].seen = pile->bodies[i].position;
         pile->poses[i].seen_rotation = pile->bodies[i].rotation;
+        pile->poses[i].moved = 0.0f;
     }
     pile_walls_see(pile);
     pile_detect_again(pile, workers);
@@ -312,83 +356,51 @@ void pile_detect(ty_pile* pile, float margin, ty_workers* workers)
 
 void pile_detect_again(ty_pile* pile, ty_workers* workers)
 {
-    lists_swap(pile);
+    candidates former = pile->former;
+    pile->former = pile->near;
+    pile->near = former;
     candidates_find(pile, workers);
-    pairs_order(pile);
     pile->stale = false;
     pile->resized = 0.0f;
 }
 
+typedef struct look
+{
+    ty_pile* pile;
+    bool* far; // of each piece: one of its bodies moved too far
+} look;
+
 // Each of two balls may come nearer by .45 of the margin. An angle is at most 2.1 times the distance of its
 // quaternions.
-bool pile_moved(const ty_pile* pile)
+static void moved_range(void* context, int64_t begin, int64_t end, int worker)
 {
-    if (pile->stale || pile_walls_moved(pile))
-        return true;
-    for (int i = 0; i < pile->count; i++)
+    (void)worker;
+    const look* l = context;
+    const ty_pile* pile = l->pile;
+    bool far = false;
+    for (int i = (int)begin; i < (int)end; i++)
     {
         const ty_body* b = &pile->bodies[i];
-        const pose* at = &pile->poses[i];
+        pose* at = &pile->poses[i];
         ty_quat p = b->rotation, q = at->seen_rotation;
         float turn = ty_sqr(p.x - q.x) + ty_sqr(p.y - q.y) + ty_sqr(p.z - q.z) + ty_sqr(p.w - q.w);
         float lever = 2.1f * pile->def.grains[b->grain].radius * b->scale * pile->growth * pile_bent_reach(pile, i);
-        float distance = ty_length(ty_sub(b->position, at->seen)) + lever * sqrtf(turn);
-        if (distance > 0.45f * at->reach)
-            return true;
+        at->moved = ty_length(ty_sub(b->position, at->seen)) + lever * sqrtf(turn);
+        far |= at->moved > 0.45f * at->reach;
     }
-    return false;
+    l->far[begin / PILE_PIECE] = far;
 }
 
-// --- working through the colours ---
-
-typedef struct sweep
+bool pile_moved(ty_pile* pile, ty_workers* workers)
 {
-    ty_pile* pile;
-    pile_pair_fn* fn;
-    int first;
-} sweep;
-
-static void sweep_range(void* context, int64_t begin, int64_t end, int worker)
-{
-    (void)worker;
-    const sweep* s = context;
-    for (int64_t i = begin; i < end; i++)
-        s->fn(s->pile, &s->pile->pairs[s->pile->order[s->first + i]]);
-}
-
-// As they lie in memory.
-static void each_range(void* context, int64_t begin, int64_t end, int worker)
-{
-    (void)worker;
-    const sweep* s = context;
-    for (int64_t i = begin; i < end; i++)
-        s->fn(s->pile, &s->pile->pairs[i]);
-}
-
-void pile_sweep(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn)
-{
-    enum
-    {
-        WORTH_SHARING = 768, // pairs of a colour; below, waking a thread costs more than it gives
-    };
-    for (int c = 0; c <= PAIR_COLORS; c++)
-    {
-        sweep s = {pile, fn, pile->color_first[c]};
-        int count = pile->color_first[c + 1] - s.first;
-        bool share = count >= WORTH_SHARING && c != PAIR_COLORS - 1;
-        if (count > 0)
-            ty_parallel_all(share ? workers : NULL, count, share ? (count + 7) / 8 : count, sweep_range, &s);
-    }
-}
-
-void pile_each(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn)
-{
-    enum
-    {
-        WORTH_SHARING = 1024,
-        PIECE = 256,
-    };
-    sweep s = {pile, fn, 0};
-    bool share = pile->pair_count >= WORTH_SHARING;
-    ty_parallel_all(share ? workers : NULL, pile->pair_count, share ? PIECE : pile->pair_count + 1, each_range, &s);
+    if (pile->stale || pile_walls_moved(pile))
+        return true;
+    int pieces = pile->count / PILE_PIECE + 1;
+    look l = {pile, TY_ALLOC(bool, pieces)};
+    pile_each_body(pile, workers, moved_range, &l);
+    bool far = false;
+    for (int k = 0; k < pieces; k++)
+        far |= l.far[k];
+    ty_free(l.far);
+    return far;
 }

@@ -10,13 +10,13 @@ static void project(ty_pile* pile, const ty_fill_top* top, int sweeps, ty_worker
     {
         if (k % 8 == 0)
         {
-            pile_refresh_all(pile);
+            pile_refresh_all(pile, workers);
             pile_detect(pile, PILE_MARGIN, workers);
         }
         pile_project(pile, workers);
     }
     pile->lid = NULL;
-    pile_refresh_all(pile);
+    pile_refresh_all(pile, workers);
     pile_detect(pile, PILE_MARGIN, workers);
 }
 
@@ -32,7 +32,7 @@ float ty_pile_fit(ty_pile* pile, const ty_fill_top* top, int sweeps, ty_workers*
     }
     float size = pile->growth;
     pile->growth = 1.0f;
-    pile_refresh_all(pile);
+    pile_refresh_all(pile, workers);
     pile->stale = true;
     return size;
 }

@@ -54,10 +54,10 @@ static void pair_measure(const ty_pile* pile, const pair* p, support* supports, 
     int points = 0;
     for (int i = p->first; i < p->first + p->count; i++)
     {
-        float gap = touch_gap(pile, p, &pile->touches[i]);
+        float gap = touch_gap(pile, p, &pile->near.touches[i]);
         points += gap <= near;
         least = ty_min(least, gap);
-        load += pile->touches[i].normal_impulse;
+        load += pile->near.touches[i].normal_impulse;
     }
     o->loaded += p->b >= 0 && load > LOADED * weight;
     if (points > 0 && p->b < 0)
@@ -84,13 +84,13 @@ void ty_pile_measure(ty_pile* pile, ty_pile_metrics* out, bool* held)
     *out = (ty_pile_metrics){.substeps = pile->substeps};
     if (pile->count == 0)
         return;
-    pile_refresh_all(pile);
-    if (pile_moved(pile))
+    pile_refresh_all(pile, NULL);
+    if (pile_moved(pile, NULL))
         pile_detect(pile, pile->margin, NULL);
     support* supports = TY_ALLOC(support, pile->count);
     overlaps o = {0};
-    for (int i = 0; i < pile->pair_count; i++)
-        pair_measure(pile, &pile->pairs[i], supports, &o);
+    for (int i = 0; i < pile->near.pair_count; i++)
+        pair_measure(pile, &pile->near.pairs[i], supports, &o);
     *out = (ty_pile_metrics){.count = pile->count, .substeps = pile->substeps};
     double neighbours = 0.0;
     for (int i = 0; i < pile->count; i++)

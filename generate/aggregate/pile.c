@@ -32,9 +32,11 @@ void ty_pile_destroy(ty_pile* pile)
 {
     if (!pile)
         return;
-    void* arrays[] = {pile->bodies, pile->poses,   pile->motions,   pile->balls,       pile->ball_first,
-                      pile->pairs,  pile->touches, pile->old_pairs, pile->old_touches, pile->contacts,
-                      pile->order,  pile->walls,   pile->solid,     pile->rolls,       pile->bends};
+    void* arrays[] = {pile->bodies,       pile->poses,         pile->motions,        pile->balls,
+                      pile->ball_first,   pile->near.pairs,    pile->near.places,    pile->near.touches,
+                      pile->former.pairs, pile->former.places, pile->former.touches, pile->contacts,
+                      pile->blocks.first, pile->slots,         pile->walls,          pile->solid,
+                      pile->rolls,        pile->bends};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         ty_free(arrays[i]);
     ty_free(pile);
@@ -148,19 +150,27 @@ void ty_pile_set_bridge(ty_pile* pile, const ty_bridge_def* bridge)
 // Drops the pairs of removed bodies and renames the others; ascending order is kept, so impulses still find their pair.
 static void pairs_rename(ty_pile* pile, const int* renamed)
 {
+    candidates* near = &pile->near;
+    pair* pairs = TY_ALLOC(pair, near->pair_count);
     int kept = 0, walls = 0;
-    for (int i = 0; i < pile->pair_count; i++)
+    for (int i = 0; i < near->pair_count; i++)
     {
-        pair p = pile->pairs[i];
+        pair p = near->pairs[near->places[i]];
         if (renamed[p.a] < 0 || (p.b >= 0 && renamed[p.b] < 0))
             continue;
         p.a = renamed[p.a];
         p.b = p.b >= 0 ? renamed[p.b] : p.b;
         walls += p.b < 0;
-        pile->pairs[kept++] = p;
+        pairs[kept++] = p;
     }
-    pile->pair_count = kept;
-    pile->wall_first = kept - walls;
+    for (int i = 0; i < kept; i++)
+    {
+        near->pairs[i] = pairs[i];
+        near->places[i] = i;
+    }
+    ty_free(pairs);
+    near->pair_count = kept;
+    near->wall_first = kept - walls;
     pile->stale = true;
 }
 
@@ -245,4 +255,13 @@ ty_vec3 ty_pile_momentum(const ty_pile* pile)
     for (int i = 0; i < pile->count; i++)
         sum = ty_mad(sum, pile->motions[i].v, 1.0f / pile->motions[i].inverse_mass);
     return sum;
+}
+
+void pile_each_body(ty_pile* pile, ty_workers* workers, ty_range_fn* fn, void* context)
+{
+    enum
+    {
+        WORTH_SHARING = 1024,
+    };
+    ty_parallel_all(pile->count >= WORTH_SHARING ? workers : NULL, pile->count, PILE_PIECE, fn, context);
 }

@@ -79,7 +79,7 @@ static int kept_touches(const ty_pile* pile, const pair* p)
 {
     int count = 0;
     for (int i = p->first; i < p->first + p->count; i++)
-        count += is_kept(&pile->touches[i]);
+        count += is_kept(&pile->near.touches[i]);
     return count;
 }
 
@@ -95,12 +95,12 @@ static saved_head head_of(const ty_pile* pile)
     h.body_count = pile->count;
     h.bend_count = pile->bends ? pile->count : 0;
     h.wall_count = pile_moving_walls(pile);
-    for (int i = 0; i < pile->pair_count; i++)
+    for (int i = 0; i < pile->near.pair_count; i++)
     {
-        int touches = kept_touches(pile, &pile->pairs[i]);
-        bool saved = touches > 0 || pile->pairs[i].bridged;
+        int touches = kept_touches(pile, &pile->near.pairs[i]);
+        bool saved = touches > 0 || pile->near.pairs[i].bridged;
         h.pair_count += saved;
-        h.wall_first += saved && i < pile->wall_first;
+        h.wall_first += saved && i < pile->near.wall_first;
         h.touch_count += touches;
     }
     return h;
@@ -129,9 +129,9 @@ static uint8_t* bodies_put(const ty_pile* pile, uint8_t* at)
 
 static uint8_t* pairs_put(const ty_pile* pile, uint8_t* at)
 {
-    for (int i = 0; i < pile->pair_count; i++)
+    for (int i = 0; i < pile->near.pair_count; i++)
     {
-        const pair* p = &pile->pairs[i];
+        const pair* p = &pile->near.pairs[pile->near.places[i]];
         saved_pair s = {p->a, p->b, (uint16_t)kept_touches(pile, p), p->bridged};
         if (s.count > 0 || s.bridged)
             at = put(at, &s, sizeof s);
@@ -141,14 +141,17 @@ static uint8_t* pairs_put(const ty_pile* pile, uint8_t* at)
 
 static uint8_t* touches_put(const ty_pile* pile, uint8_t* at)
 {
-    for (int i = 0; i < pile->pair_count; i++)
-        for (int k = pile->pairs[i].first; k < pile->pairs[i].first + pile->pairs[i].count; k++)
+    for (int i = 0; i < pile->near.pair_count; i++)
+    {
+        const pair* p = &pile->near.pairs[pile->near.places[i]];
+        for (int k = p->first; k < p->first + p->count; k++)
         {
-            const touch* t = &pile->touches[k];
+            const touch* t = &pile->near.touches[k];
             saved_touch s = {t->a, t->b, {0, 0}, t->normal_impulse, t->tangent_impulse};
             if (is_kept(t))
                 at = put(at, &s, sizeof s);
         }
+    }
     return at;
 }
 
@@ -309,27 +312,30 @@ static ty_status head_check(restorer* r, const void* bytes, size_t size)
 
 static void pairs_take(const restorer* r)
 {
-    ty_pile* pile = r->pile;
-    list_reserve((void**)&pile->pairs, &pile->pair_capacity, r->head.pair_count, sizeof(pair));
-    list_reserve((void**)&pile->touches, &pile->touch_capacity, r->head.touch_count, sizeof(touch));
+    candidates* near = &r->pile->near;
+    list_reserve((void**)&near->pairs, &near->pair_capacity, r->head.pair_count, sizeof(pair));
+    list_reserve((void**)&near->places, &near->place_capacity, r->head.pair_count, sizeof(int));
+    list_reserve((void**)&near->touches, &near->touch_capacity, r->head.touch_count, sizeof(touch));
     int first = 0;
     for (int i = 0; i < r->head.pair_count; i++)
     {
         saved_pair s;
         take(r->pairs, i, &s, sizeof s);
-        pile->pairs[i] = (pair){.a = s.a, .b = s.b, .first = first, .count = s.count, .bridged = s.bridged};
+        near->pairs[i] = (pair){.a = s.a, .b = s.b, .first = first, .count = s.count, .bridged = s.bridged};
+        near->pairs[i].loaded = s.count > 0;
+        near->places[i] = i;
         first += s.count;
     }
     for (int i = 0; i < r->head.touch_count; i++)
     {
         saved_touch s;
         take(r->touches, i, &s, sizeof s);
-        pile->touches[i] =
+        near->touches[i] =
             (touch){.a = s.a, .b = s.b, .normal_impulse = s.normal_impulse, .tangent_impulse = s.tangent_impulse};
     }
-    pile->pair_count = r->head.pair_count;
-    pile->wall_first = r->head.wall_first;
-    pile->touch_count = r->head.touch_count;
+    near->pair_count = r->head.pair_count;
+    near->wall_first = r->head.wall_first;
+    near->touch_count = r->head.touch_count;
 }
 
 // The lists as they were: found from where all stood then.

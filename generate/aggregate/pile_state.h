@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inside of a pile: bodies, candidate contacts with the impulses they keep, colours, contacts of the substep.
+// The inside of a pile: bodies, candidate contacts with the impulses they keep, contacts of the substep.
 #pragma once
 #include "candidates.h"
 #include <tsuya/generate/pile.h>
@@ -7,10 +7,13 @@
 enum
 {
     PILE_WALL = -1,
-    PILE_LID = 31, // wall number of the lid during a fill
+    PILE_LID = 31,    // wall number of the lid during a fill
+    PILE_PIECE = 256, // bodies that are shared at a time
 };
 
 #define PILE_TIGHT 0.03e-3f // m, gaps up to here are contacts of the substep
+#define PILE_GAP_UNIT 8e-6f // m
+#define PILE_GAP_MOST 255
 #define PILE_MARGIN 0.3e-3f // m, least reach of a body for candidates; new ones when a ball moved .45 of its reach
 
 // What the solver needs of a body, one cache line.
@@ -30,7 +33,7 @@ typedef struct motion
 typedef struct touch
 {
     uint8_t a, b;
-    bool near;            // a contact of this substep
+    uint8_t gap;          // PILE_GAP_UNITs when candidates were found, rounded down; the largest for all beyond
     float normal_impulse; // kept across substeps
     ty_vec3 tangent_impulse;
 } touch;
@@ -38,12 +41,26 @@ typedef struct touch
 typedef struct pair
 {
     int a, b; // bodies, a < b; b = PILE_WALL
-    int first, count;
-    int slot;     // of its contacts in this substep
-    int active;   // contacts in this substep; behind them the pull, if there is one
-    bool bridged; // by liquid, since they touched
-    bool pulled;  // in this substep
+    int first;
+    int slot; // of its contacts in this substep
+    uint16_t count;
+    uint16_t active; // contacts in this substep; behind them the pull, if there is one
+    uint8_t gap;     // the least of its touches
+    bool loaded;     // its touches may hold impulses
+    bool bridged;    // by liquid, since they touched
+    bool pulled;     // in this substep
 } pair;
+
+// Pairs and their touches, block by block; walls after all others.
+typedef struct candidates
+{
+    pair* pairs;
+    int pair_count, pair_capacity, wall_first;
+    int* places; // [pair_count] in pairs, by ascending (a, b), walls after all others
+    int place_capacity;
+    touch* touches;
+    int touch_count, touch_capacity;
+} candidates;
 
 typedef struct contact
 {
@@ -69,6 +86,7 @@ typedef struct pose
     ty_vec3 seen;    // position and rotation when candidates were last found
     ty_quat seen_rotation;
     float reach; // m, candidates lie within the mean of two bodies' reaches; faster bodies reach farther
+    float moved; // m, a ball of it at most since candidates were found
 } pose;
 
 // How a body differs from its element as made.
@@ -109,19 +127,12 @@ struct ty_pile
     int* ball_first; // [count + 1], of each body in balls
     int ball_capacity;
     int count, capacity;
-    pair* pairs; // ascending (a, b); walls after all others
-    int pair_count, pair_capacity, wall_first;
-    touch* touches;
-    int touch_count, touch_capacity;
-    pair* old_pairs;
-    int old_pair_count, old_pair_capacity, old_wall_first;
-    touch* old_touches;
-    int old_touch_capacity;
+    candidates near, former; // former: those before, for the impulses that are kept
+    pair_blocks blocks;      // of near
     contact* contacts;
     int contact_capacity;
-    int* order; // pairs by colour; the walls are the colour after the last
-    int order_capacity;
-    int color_first[PAIR_COLORS + 2];
+    int* slots; // [blocks + 1], where each block's contacts begin
+    int slot_capacity;
     ty_wall_motion_fn* wall_fn;
     void* wall_context;
     moving_wall* walls; // NULL = they stand still
@@ -150,6 +161,7 @@ static inline int pile_ball_count(const ty_pile* pile, int body)
 }
 
 // pile.c
+void pile_each_body(ty_pile* pile, ty_workers* workers, ty_range_fn* fn, void* context); // ranges of PILE_PIECE
 void pile_refresh(ty_pile* pile, int body); // frame, balls and inertia from position and rotation
 void pile_turn(ty_body* body, ty_vec3 rotation_vector);
 float pile_wall(const ty_pile* pile, int wall, ty_vec3 p, ty_vec3* normal);
@@ -166,17 +178,12 @@ ty_vec3 pile_in_wall(const ty_pile* pile, int wall, ty_vec3 p);       // world t
 ty_vec3 pile_wall_velocity(const ty_pile* pile, int wall, ty_vec3 p); // m/s
 
 // contact.c
-// Candidates within margin, in id order, with kept impulses and colours. Equal bits for any worker count.
+// Candidates within margin, in id order, with kept impulses, in blocks. Equal bits for any worker count.
 void pile_detect(ty_pile* pile, float margin, ty_workers* workers);
 // The same lists again from bodies that stand where they were then, with the reaches that are noted.
 void pile_detect_again(ty_pile* pile, ty_workers* workers);
-bool pile_moved(const ty_pile* pile); // a ball may have moved more than .45 of its body's reach
-
-// Runs fn over the pairs of each colour in turn, then over the walls. Pairs of one colour share no body.
-typedef void pile_pair_fn(ty_pile* pile, pair* p);
-void pile_sweep(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn);
-// The same without order, for what writes to the pair alone.
-void pile_each(ty_pile* pile, ty_workers* workers, pile_pair_fn* fn);
+// A ball may have moved more than .45 of its body's reach. Notes how far each body's have.
+bool pile_moved(ty_pile* pile, ty_workers* workers);
 
 // settle.c
 void pile_substep(ty_pile* pile, ty_workers* workers);
@@ -191,7 +198,7 @@ void pile_bridge_prepare(ty_pile* pile, pair* p, bool touching); // the pull of 
 
 // polish.c
 void pile_project(ty_pile* pile, ty_workers* workers); // one sweep of position corrections
-void pile_refresh_all(ty_pile* pile);
+void pile_refresh_all(ty_pile* pile, ty_workers* workers);
 
 // packing.c
 void pile_packing(ty_pile* pile, ty_pile_metrics* out); // phi and phi_balls

@@ -55,12 +55,12 @@ static bool touch_project(ty_pile* pile, const pair* p, const touch* t, ty_vec3 
     return true;
 }
 
-static void pair_project(ty_pile* pile, pair* p)
+static void pair_project(ty_pile* pile, const pair* p)
 {
     ty_vec3 from = {0.0f, 0.0f, 0.0f};
     for (int i = p->first, last = -1; i < p->first + p->count; i++)
     {
-        const touch* t = &pile->touches[i];
+        const touch* t = &pile->near.touches[i];
         if (t->a != last) // several touches of a ball follow each other
             from = ball_center(pile, p->a, t->a);
         float radius = pile_balls(pile, p->a)[t->a].radius;
@@ -69,15 +69,29 @@ static void pair_project(ty_pile* pile, pair* p)
     }
 }
 
-void pile_project(ty_pile* pile, ty_workers* workers)
+static void block_project(void* context, int block, int begin, int end)
 {
-    pile_sweep(pile, workers, pair_project);
+    (void)block;
+    ty_pile* pile = context;
+    for (int i = begin; i < end; i++)
+        pair_project(pile, &pile->near.pairs[i]);
 }
 
-void pile_refresh_all(ty_pile* pile)
+void pile_project(ty_pile* pile, ty_workers* workers)
 {
-    for (int i = 0; i < pile->count; i++)
-        pile_refresh(pile, i);
+    pair_blocks_sweep(&pile->blocks, workers, block_project, pile);
+}
+
+static void refresh_range(void* context, int64_t begin, int64_t end, int worker)
+{
+    (void)worker;
+    for (int64_t i = begin; i < end; i++)
+        pile_refresh(context, (int)i);
+}
+
+void pile_refresh_all(ty_pile* pile, ty_workers* workers)
+{
+    pile_each_body(pile, workers, refresh_range, pile);
 }
 
 static void stop(ty_pile* pile)
@@ -100,7 +114,7 @@ void ty_pile_inflate(ty_pile* pile, const ty_fill_top* top, int sweeps, ty_worke
         pile->growth = growing ? 0.5f + 0.5f * (float)k / grow : 1.0f;
         if (k % (growing ? 4 : 8) == 0)
         {
-            pile_refresh_all(pile);
+            pile_refresh_all(pile, workers);
             pile_detect(pile, 0.25e-3f * pile->growth, workers);
         }
         pile_project(pile, workers);
@@ -108,7 +122,7 @@ void ty_pile_inflate(ty_pile* pile, const ty_fill_top* top, int sweeps, ty_worke
     pile->growth = 1.0f;
     pile->lid = NULL;
     stop(pile);
-    pile_refresh_all(pile);
+    pile_refresh_all(pile, workers);
     pile->stale = true;
 }
 
@@ -118,12 +132,12 @@ void ty_pile_polish(ty_pile* pile, int sweeps, ty_workers* workers)
     stop(pile);
     for (int k = 0; k < sweeps && !ty_cancel_requested(); k++)
     {
-        if (pile_moved(pile))
+        if (pile_moved(pile, workers))
         {
-            pile_refresh_all(pile);
+            pile_refresh_all(pile, workers);
             pile_detect(pile, pile->margin, workers);
         }
         pile_project(pile, workers);
     }
-    pile_refresh_all(pile);
+    pile_refresh_all(pile, workers);
 }

@@ -240,7 +240,7 @@ static ty_status element(const void* def, int number, ty_mesh** out, ty_error* e
 
 const ty_generator ty_aggregate_generator = {
     .kind = "aggregate",
-    .build_id = "aggregate 6",
+    .build_id = "aggregate 7",
     .product = TY_PRODUCT_AGGREGATE,
     .params = &recipe_table,
     .make = make,

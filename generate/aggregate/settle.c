@@ -13,30 +13,34 @@
 
 // --- contacts of the substep ---
 
-static float along(const motion* m, ty_vec3 arm, ty_vec3 direction)
+// Inverse effective masses of a body along the normal and the two tangents, and across these.
+typedef struct inverse_mass
 {
-    ty_vec3 u = ty_cross(arm, direction);
-    return m->inverse_mass + ty_dot(u, ty_symmetric_times(m->inverse_inertia, u));
-}
+    float nn, ss, tt, st;
+} inverse_mass;
 
-static float across(const motion* m, ty_vec3 arm, ty_vec3 s, ty_vec3 t)
+static inline inverse_mass arm_mass(const motion* m, ty_vec3 arm, const ty_frame* f, ty_vec3 normal)
 {
-    return ty_dot(ty_cross(arm, s), ty_symmetric_times(m->inverse_inertia, ty_cross(arm, t)));
+    ty_vec3 n = ty_cross(arm, normal), s = ty_cross(arm, f->t), t = ty_cross(arm, f->b);
+    ty_vec3 js = ty_symmetric_times(m->inverse_inertia, s);
+    return (inverse_mass){m->inverse_mass + ty_dot(n, ty_symmetric_times(m->inverse_inertia, n)),
+                          m->inverse_mass + ty_dot(s, js),
+                          m->inverse_mass + ty_dot(t, ty_symmetric_times(m->inverse_inertia, t)), ty_dot(js, t)};
 }
 
 // Inverse effective mass along the normal, and the mass below that of any tangential direction.
-static void contact_masses(contact* c, const motion* a, const motion* b)
+static inline void contact_masses(contact* c, const motion* a, const motion* b)
 {
     ty_frame f = ty_frame_from_normal(c->normal);
-    float ss = along(a, c->arm_a, f.t), tt = along(a, c->arm_a, f.b), st = across(a, c->arm_a, f.t, f.b);
-    c->normal_weight = along(a, c->arm_a, c->normal);
+    inverse_mass sum = arm_mass(a, c->arm_a, &f, c->normal);
     if (b)
     {
-        ss += along(b, c->arm_b, f.t), tt += along(b, c->arm_b, f.b), st += across(b, c->arm_b, f.t, f.b);
-        c->normal_weight += along(b, c->arm_b, c->normal);
+        inverse_mass more = arm_mass(b, c->arm_b, &f, c->normal);
+        sum = (inverse_mass){sum.nn + more.nn, sum.ss + more.ss, sum.tt + more.tt, sum.st + more.st};
     }
-    float half = 0.5f * (ss - tt);
-    c->tangent_mass = 1.0f / (0.5f * (ss + tt) + sqrtf(half * half + st * st));
+    float half = 0.5f * (sum.ss - sum.tt);
+    c->normal_weight = sum.nn;
+    c->tangent_mass = 1.0f / (0.5f * (sum.ss + sum.tt) + sqrtf(half * half + sum.st * sum.st));
 }
 
 bool pile_contact_place(const ty_pile* pile, const pair* p, const touch* t, float limit, contact* c)
@@ -71,52 +75,87 @@ static bool is_still(const ty_pile* pile, int body)
     return body < 0 || pile->motions[body].asleep;
 }
 
-// Which touches of a pair are contacts of this substep. The others lose their impulses.
-static void pair_look(ty_pile* pile, pair* p)
+// The most that the gap of a touch was when candidates were found, if it is to be a contact now.
+static float farthest(const ty_pile* pile, const pair* p)
+{
+    if (p->b < 0 && pile->walls)
+        return TY_FLOAT_MAX;
+    float moved = pile->poses[p->a].moved + (p->b >= 0 ? pile->poses[p->b].moved : 0.0f);
+    return (PILE_TIGHT + moved + 2.0f * pile->resized) * (1.0f / PILE_GAP_UNIT) + 0.1f;
+}
+
+static void touch_unload(touch* t)
+{
+    if (t->normal_impulse == 0.0f) // most are: what is not written stays clean in the cache
+        return;
+    t->normal_impulse = 0.0f;
+    t->tangent_impulse = ty_vec3_make(0.0f, 0.0f, 0.0f);
+}
+
+// How many touches of a pair may be contacts of this substep. The others lose their impulses.
+static int pair_look(ty_pile* pile, pair* p)
 {
     p->active = 0;
     p->pulled = false;
     if (is_still(pile, p->a) && is_still(pile, p->b))
-        return; // the impulses stay for when one of them wakes
+        return 0; // the impulses stay for when one of them wakes
+    float limit = farthest(pile, p);
+    if (p->gap > limit && !p->loaded)
+        return p->bridged;
+    int near = 0;
     for (int i = p->first; i < p->first + p->count; i++)
     {
-        touch* t = &pile->touches[i];
-        contact c;
-        t->near = pile_contact_place(pile, p, t, PILE_TIGHT, &c);
-        p->active += t->near;
-        if (!t->near && t->normal_impulse != 0.0f) // most are none: what is not written stays clean in the cache
-        {
-            t->normal_impulse = 0.0f;
-            t->tangent_impulse = ty_vec3_make(0.0f, 0.0f, 0.0f);
-        }
+        touch* t = &pile->near.touches[i];
+        if (t->gap <= limit)
+            near++;
+        else
+            touch_unload(t);
     }
+    p->active = (uint16_t)near;
+    p->loaded = near > 0;
+    return near + (pile->cohesive && (near > 0 || p->bridged));
+}
+
+static void block_look(void* context, int block, int begin, int end)
+{
+    ty_pile* pile = context;
+    int count = 0;
+    for (int i = begin; i < end; i++)
+        count += pair_look(pile, &pile->near.pairs[i]);
+    pile->slots[block] = count;
 }
 
 // Places for the contacts, one after the other in the order in which they are worked off.
-static void contacts_lay(ty_pile* pile)
+static void contacts_lay(ty_pile* pile, ty_workers* workers)
 {
+    list_reserve((void**)&pile->slots, &pile->slot_capacity, pile->blocks.count, sizeof(int));
+    pair_blocks_each(&pile->blocks, workers, block_look, pile);
     int slot = 0;
-    for (int i = 0; i < pile->pair_count; i++)
+    for (int i = 0; i < pile->blocks.count; i++)
     {
-        pair* p = &pile->pairs[pile->order[i]];
-        p->slot = slot;
-        slot += p->active + pile->cohesive;
+        int count = pile->slots[i];
+        pile->slots[i] = slot;
+        slot += count;
     }
     list_reserve((void**)&pile->contacts, &pile->contact_capacity, slot + 1, sizeof(contact)); // never none at all
 }
 
+// The contacts of a pair from p->slot on.
 static void pair_prepare(ty_pile* pile, pair* p)
 {
     bool touching = false;
-    if (is_still(pile, p->a) && is_still(pile, p->b))
-        return;
+    float limit = farthest(pile, p);
     contact* c = &pile->contacts[p->slot];
-    for (int i = p->first; c < &pile->contacts[p->slot + p->active]; i++)
+    for (int i = p->first; i < p->first + p->count && p->active > 0; i++)
     {
-        const touch* t = &pile->touches[i];
-        if (!t->near)
+        touch* t = &pile->near.touches[i];
+        if (t->gap > limit)
             continue;
-        pile_contact_place(pile, p, t, 2.0f * PILE_TIGHT, c); // whatever the rounding
+        if (!pile_contact_place(pile, p, t, PILE_TIGHT, c))
+        {
+            touch_unload(t);
+            continue;
+        }
         touching |= c->gap <= TOUCHING;
         contact_masses(c, &pile->motions[p->a], p->b >= 0 ? &pile->motions[p->b] : NULL);
         c->normal_impulse = t->normal_impulse;
@@ -124,13 +163,14 @@ static void pair_prepare(ty_pile* pile, pair* p)
         c->touch = i;
         c++;
     }
+    p->active = (uint16_t)(c - &pile->contacts[p->slot]);
     if (pile->cohesive)
         pile_bridge_prepare(pile, p, touching);
 }
 
 // --- impulses ---
 
-static void kick(motion* m, ty_vec3 arm, ty_vec3 impulse, float sign)
+static inline void kick(motion* m, ty_vec3 arm, ty_vec3 impulse, float sign)
 {
     m->v = ty_mad(m->v, impulse, sign * m->inverse_mass);
     m->w = ty_mad(m->w, ty_symmetric_times(m->inverse_inertia, ty_cross(arm, impulse)), sign);
@@ -143,7 +183,7 @@ static void pair_kick(ty_pile* pile, const pair* p, const contact* c, ty_vec3 im
         kick(&pile->motions[p->b], c->arm_b, impulse, -1.0f);
 }
 
-static void pair_warm_start(ty_pile* pile, pair* p)
+static void pair_warm_start(ty_pile* pile, const pair* p)
 {
     for (int i = p->slot; i < p->slot + p->active + p->pulled; i++)
     {
@@ -159,7 +199,7 @@ static ty_vec3 relative_velocity(const ty_pile* pile, const pair* p, const conta
     if (p->b < 0)
     {
         ty_vec3 at = ty_add(pile->bodies[p->a].position, c->arm_a);
-        return pile->walls ? ty_sub(u, pile_wall_velocity(pile, pile->touches[c->touch].b, at)) : u;
+        return pile->walls ? ty_sub(u, pile_wall_velocity(pile, pile->near.touches[c->touch].b, at)) : u;
     }
     const motion* b = &pile->motions[p->b];
     return ty_sub(u, ty_add(b->v, ty_cross(b->w, c->arm_b)));
@@ -201,7 +241,7 @@ static void sleepers_wake(ty_pile* pile, const pair* p, const contact* c, bool t
 
 // A contact is a damped spring per unit mass, k = omega^2 / 2 and c = zeta omega at a quarter of the substep rate:
 // softness gamma = 1 / (h (c + h k)), bias rate b = k / (c + h k).
-static void pair_solve(ty_pile* pile, pair* p)
+static void pair_solve(ty_pile* pile, const pair* p)
 {
     float h = 1.0f / pile->def.rate, omega = 0.5f * TY_PI * pile->def.rate;
     float k = 0.5f * omega * omega, damping = DAMPING_RATIO * omega;
@@ -219,18 +259,55 @@ static void pair_solve(ty_pile* pile, pair* p)
         sleepers_wake(pile, p, &pile->contacts[p->slot + p->active], true);
 }
 
-static void pair_relax(ty_pile* pile, pair* p)
+static void pair_relax(ty_pile* pile, const pair* p)
 {
     for (int i = p->slot; i < p->slot + p->active; i++)
     {
         contact* c = &pile->contacts[i];
         contact_solve(pile, p, c, c->gap > 0.0f ? c->gap * pile->def.rate : 0.0f, 0.0f);
-        pile->touches[c->touch].normal_impulse = c->normal_impulse;
-        pile->touches[c->touch].tangent_impulse = c->tangent_impulse;
+        pile->near.touches[c->touch].normal_impulse = c->normal_impulse;
+        pile->near.touches[c->touch].tangent_impulse = c->tangent_impulse;
         pile->motions[p->a].load += c->normal_impulse;
         if (p->b >= 0)
             pile->motions[p->b].load += c->normal_impulse;
     }
+}
+
+// --- blocks ---
+
+// What a pair keeps acts before anything is solved, and its contacts are in the cache now.
+static void block_prepare(void* context, int block, int begin, int end)
+{
+    ty_pile* pile = context;
+    int slot = pile->slots[block];
+    for (int i = begin; i < end; i++)
+    {
+        pair* p = &pile->near.pairs[i];
+        p->slot = slot;
+        if (p->active == 0 && !p->bridged)
+            continue;
+        if (is_still(pile, p->a) && is_still(pile, p->b))
+            continue;
+        pair_prepare(pile, p);
+        pair_warm_start(pile, p);
+        slot += p->active + p->pulled;
+    }
+}
+
+static void block_solve(void* context, int block, int begin, int end)
+{
+    (void)block;
+    ty_pile* pile = context;
+    for (int i = begin; i < end; i++)
+        pair_solve(pile, &pile->near.pairs[i]);
+}
+
+static void block_relax(void* context, int block, int begin, int end)
+{
+    (void)block;
+    ty_pile* pile = context;
+    for (int i = begin; i < end; i++)
+        pair_relax(pile, &pile->near.pairs[i]);
 }
 
 // --- the substep ---
@@ -346,31 +423,18 @@ static void bodies_roll(void* context, int64_t begin, int64_t end, int worker)
     }
 }
 
-static void for_bodies(ty_pile* pile, ty_workers* workers, ty_range_fn* fn)
-{
-    enum
-    {
-        WORTH_SHARING = 1024,
-        PIECE = 256,
-    };
-    bool share = pile->count >= WORTH_SHARING;
-    ty_parallel_all(share ? workers : NULL, pile->count, share ? PIECE : pile->count + 1, fn, pile);
-}
-
 void pile_substep(ty_pile* pile, ty_workers* workers)
 {
     pile_walls_place(pile);
-    if (pile_moved(pile))
+    if (pile_moved(pile, workers))
         pile_detect(pile, pile->margin, workers);
-    for_bodies(pile, workers, bodies_accelerate);
-    pile_each(pile, workers, pair_look);
-    contacts_lay(pile);
-    pile_each(pile, workers, pair_prepare);
-    pile_sweep(pile, workers, pair_warm_start);
-    pile_sweep(pile, workers, pair_solve);
-    for_bodies(pile, workers, bodies_advance);
-    pile_sweep(pile, workers, pair_relax);
-    for_bodies(pile, workers, bodies_roll);
+    pile_each_body(pile, workers, bodies_accelerate, pile);
+    contacts_lay(pile, workers);
+    pair_blocks_sweep(&pile->blocks, workers, block_prepare, pile);
+    pair_blocks_sweep(&pile->blocks, workers, block_solve, pile);
+    pile_each_body(pile, workers, bodies_advance, pile);
+    pair_blocks_sweep(&pile->blocks, workers, block_relax, pile);
+    pile_each_body(pile, workers, bodies_roll, pile);
     pile->time += 1.0f / pile->def.rate;
     pile->substeps++;
 }

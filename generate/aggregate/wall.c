@@ -97,7 +97,7 @@ void ty_pile_move_walls(ty_pile* pile, ty_wall_motion_fn* fn, void* context)
 void ty_pile_set_container(ty_pile* pile, const ty_container* container)
 {
     pile->def.container = container;
-    pile->pair_count = pile->wall_first;
+    pile->near.pair_count = pile->near.wall_first;
     ty_pile_move_walls(pile, NULL, NULL);
 }
 

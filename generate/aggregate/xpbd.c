@@ -32,8 +32,8 @@ void ty_xpbd_destroy(ty_xpbd* x)
 {
     if (!x)
         return;
-    void* arrays[] = {x->particles, x->rest,  x->bodies,  x->stretches,   x->bends,
-                      x->triangles, x->nears, x->couples, x->old_couples, x->order};
+    void* arrays[] = {x->particles, x->rest,    x->bodies,      x->stretches, x->bends,       x->triangles,
+                      x->nears,     x->couples, x->old_couples, x->order,     x->blocks.first};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         ty_free(arrays[i]);
     ty_free(x);

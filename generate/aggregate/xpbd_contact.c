@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contacts of elastic bodies: found on a grid in id order, coloured, and projected once a substep with friction and
-// the pull of water. Multipliers begin at 0 each time: friction undoes the slip of that substep alone.
+// Contacts of elastic bodies: found on a grid in id order, put into blocks, and projected once a substep with friction
+// and the pull of water. Multipliers begin at 0 each time: friction undoes the slip of that substep alone.
 #include "xpbd_state.h"
 
 #define PULL_STEP 0.01e-3f // m, farthest that a pull moves a particle in a substep
@@ -65,7 +65,7 @@ static void bodies_near(ty_xpbd* x, int i, int j)
     couple_push(x, i, j, first);
 }
 
-static void couples_find(ty_xpbd* x)
+static body_grid couples_find(ty_xpbd* x)
 {
     float widest = 0.0f;
     for (int i = 0; i < x->body_count; i++)
@@ -80,7 +80,7 @@ static void couples_find(ty_xpbd* x)
             bodies_near(x, i, near_ones.at[n]);
     }
     ty_free(near_ones.at);
-    body_grid_destroy(&grid);
+    return grid;
 }
 
 static void walls_near(ty_xpbd* x)
@@ -133,12 +133,13 @@ void xpbd_detect(ty_xpbd* x)
     SWAP(int, x->couple_capacity, x->old_couple_capacity);
     x->old_couple_count = x->couple_count;
     x->near_count = x->couple_count = 0;
-    couples_find(x);
+    body_grid grid = couples_find(x);
     x->wall_first = x->couple_count;
     bridges_keep(x);
     walls_near(x);
     list_reserve((void**)&x->order, &x->order_capacity, x->couple_count, sizeof(int));
-    pairs_color(x->couples, sizeof(couple), x->couple_count, x->body_count, x->order, x->color_first);
+    pair_blocks_make(&x->blocks, &grid, x->couples, sizeof(couple), x->couple_count, x->order);
+    body_grid_destroy(&grid);
     x->moved = 0.0f;
     x->stale = false;
 }
@@ -250,41 +251,24 @@ double xpbd_contacts_energy(const ty_xpbd* x)
     return sum;
 }
 
-typedef struct sweep
+static void block_solve(void* context, int block, int begin, int end)
 {
-    ty_xpbd* x;
-    int first;
-} sweep;
-
-static void sweep_range(void* context, int64_t begin, int64_t end, int worker)
-{
-    (void)worker;
-    const sweep* s = context;
-    for (int64_t i = begin; i < end; i++)
+    (void)block;
+    ty_xpbd* x = context;
+    for (int i = begin; i < end; i++)
     {
-        couple* c = &s->x->couples[s->x->order[s->first + i]];
-        if (c->b >= 0 && s->x->cohesive)
-            couple_pull(s->x, c);
+        couple* c = &x->couples[x->order[i]];
+        if (c->b >= 0 && x->cohesive)
+            couple_pull(x, c);
         for (int k = c->first; k < c->first + c->count; k++)
             if (c->b >= 0)
-                near_solve(s->x, &s->x->nears[k]);
+                near_solve(x, &x->nears[k]);
             else
-                wall_solve(s->x, &s->x->nears[k]);
+                wall_solve(x, &x->nears[k]);
     }
 }
 
 void xpbd_contacts_solve(ty_xpbd* x, ty_workers* workers)
 {
-    enum
-    {
-        WORTH_SHARING = 768, // couples of a colour
-    };
-    for (int c = 0; c <= PAIR_COLORS; c++)
-    {
-        sweep s = {x, x->color_first[c]};
-        int count = x->color_first[c + 1] - s.first;
-        bool share = count >= WORTH_SHARING && c != PAIR_COLORS - 1;
-        if (count > 0)
-            ty_parallel_for(share ? workers : NULL, count, share ? (count + 7) / 8 : count, sweep_range, &s);
-    }
+    pair_blocks_sweep(&x->blocks, workers, block_solve, x);
 }

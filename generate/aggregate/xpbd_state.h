@@ -68,7 +68,7 @@ struct ty_xpbd
     int couple_count, couple_capacity, old_couple_count, old_couple_capacity, wall_first;
     int* order;
     int order_capacity;
-    int color_first[PAIR_COLORS + 2];
+    pair_blocks blocks;
     float moved; // m, how far particles may have come since candidates were found
     bool stale, cohesive;
     float margin; // m, gaps up to here are candidates

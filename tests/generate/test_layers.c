@@ -128,7 +128,7 @@ static void what_is_lost_comes_again(void** state)
     ty_aggregate_recipe r = small_bowl(&layer, 1);
     r.fill.count = 260;
     r.fill.heap = 8e-3f;
-    r.settle.friction = 0.4f;
+    r.settle.friction = 0.3f;
     r.settle.rolling = 0.0f;
     ty_aggregate* a = NULL;
     for (r.seed.value = 1; r.seed.value <= 8 && (!a || strstr(a->metrics, "\"lost\": 0,")); r.seed.value++)
