@@ -136,8 +136,8 @@ TY_CHECKED ty_status ty_develop(const ty_exr* exr, const ty_develop_def* def, co
 void ty_signals_install(void);
 
 extern const ty_command ty_command_render, ty_command_develop, ty_command_merge, ty_command_check, ty_command_info,
-    ty_command_params, ty_command_pack, ty_command_fill, ty_command_filter, ty_command_roots, ty_command_export,
-    ty_command_doctor;
+    ty_command_params, ty_command_pack, ty_command_fill, ty_command_filter, ty_command_loop, ty_command_roots,
+    ty_command_export, ty_command_doctor;
 extern const ty_command ty_command_compare, ty_command_regress;
 extern const ty_command ty_command_turntable, ty_command_sweep;
 extern const ty_command ty_command_moisture, ty_command_calibrate;

@@ -22,6 +22,7 @@ static const ty_command* const commands[] = {
     &ty_command_pack,      //
     &ty_command_fill,      //
     &ty_command_filter,    //
+    &ty_command_loop,      //
     &ty_command_roots,     //
     &ty_command_export,    //
     &ty_command_moisture,  //

@@ -15,7 +15,8 @@
 
 enum
 {
-    MOST_PICTURE = 1 << 30 // bytes
+    MOST_PICTURE = 1 << 30, // bytes
+    MOST_ARGUMENTS = 48
 };
 
 // The first executable `ffmpeg` of PATH; an empty entry is the present folder and left out.
@@ -43,7 +44,7 @@ bool ty_video_available(void)
 
 ty_status ty_video_probe(const char* output, ty_error* error)
 {
-    static const char* const kinds[] = {"mp4", "mov", "mkv"};
+    static const char* const kinds[] = {"mp4", "mov", "mkv", "gif"};
     for (int i = 0; i < TY_PARAM_COUNT(kinds); i++)
     {
         if (strcmp(ty_path_extension(output), kinds[i]) == 0)
@@ -51,8 +52,33 @@ ty_status ty_video_probe(const char* output, ty_error* error)
             return ty_output_probe(output, error);
         }
     }
-    return ty_error_set(error, TY_USAGE, "the video '%.300s' must end in .mp4, .mov or .mkv", output);
+    return ty_error_set(error, TY_USAGE, "the video '%.300s' must end in .mp4, .mov, .mkv or .gif", output);
 }
+
+// Sides of yuv420p are even; the colours of the pictures are sRGB, whose primaries are those of BT.709.
+static const char* const h264[] = {"-vf",
+                                   "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,"
+                                   "format=yuv420p",
+                                   "-c:v",
+                                   "libx264",
+                                   "-crf",
+                                   "16",
+                                   "-preset",
+                                   "slow",
+                                   "-colorspace",
+                                   "bt709",
+                                   "-color_primaries",
+                                   "bt709",
+                                   "-color_trc",
+                                   "iec61966-2-1",
+                                   "-color_range",
+                                   "tv",
+                                   "-movflags",
+                                   "+faststart",
+                                   NULL};
+// One palette for all pictures; plays for ever.
+static const char* const gif[] = {"-vf", "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=none", "-loop", "0",
+                                  NULL};
 
 // An ffmpeg that reads pictures from *input (to be closed by the caller) and writes to file.
 static ty_status start(const char* ffmpeg, const char* file, double fps, pid_t* child, int* input, ty_error* error)
@@ -60,42 +86,17 @@ static ty_status start(const char* ffmpeg, const char* file, double fps, pid_t* 
     char rate[32], output[TY_PATH_MAX + 8];
     snprintf(rate, sizeof rate, "%.6g", fps);
     snprintf(output, sizeof output, "file:%s", file); // whatever the name looks like, it is a file
-    // Sides of yuv420p are even; the colours of the pictures are sRGB, whose primaries are those of BT.709.
-    const char* const arguments[] = {
-        "ffmpeg",
-        "-nostdin",
-        "-hide_banner",
-        "-loglevel",
-        "error",
-        "-y",
-        "-f",
-        "image2pipe",
-        "-c:v",
-        "png",
-        "-framerate",
-        rate,
-        "-i",
-        "pipe:0",
-        "-vf",
-        "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
-        "-c:v",
-        "libx264",
-        "-crf",
-        "16",
-        "-preset",
-        "slow",
-        "-colorspace",
-        "bt709",
-        "-color_primaries",
-        "bt709",
-        "-color_trc",
-        "iec61966-2-1",
-        "-color_range",
-        "tv",
-        "-movflags",
-        "+faststart",
-        output,
-        NULL};
+    const char* const input_arguments[] = {"ffmpeg",     "-nostdin", "-hide_banner", "-loglevel", "error",
+                                           "-y",         "-f",       "image2pipe",   "-c:v",      "png",
+                                           "-framerate", rate,       "-i",           "pipe:0"};
+    const char* arguments[MOST_ARGUMENTS] = {NULL};
+    int count = 0;
+    for (int i = 0; i < TY_PARAM_COUNT(input_arguments); i++)
+        arguments[count++] = input_arguments[i];
+    const char* const* encoding = strcmp(ty_path_extension(file), "gif") == 0 ? gif : h264;
+    for (int i = 0; encoding[i]; i++)
+        arguments[count++] = encoding[i];
+    arguments[count] = output;
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0)
     {

@@ -5,10 +5,11 @@
 #include <tsuya/generate/asset.h>
 #include <tsuya/generate/fill_recipe.h>
 #include <tsuya/generate/filter_recipe.h>
+#include <tsuya/generate/loop_recipe.h>
 #include <tsuya/generate/roots_recipe.h>
 
 static const ty_generator* const generators[] = {&ty_aggregate_generator, &ty_fill_generator, &ty_filter_generator,
-                                                 &ty_roots_generator};
+                                                 &ty_loop_generator, &ty_roots_generator};
 
 const ty_generator* const* ty_generator_list(int* count)
 {

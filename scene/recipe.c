@@ -193,8 +193,8 @@ static ty_status write_film(void* context, int frame, ty_aggregate* aggregate, t
     return ty_aggregate_export(path, aggregate, false, error);
 }
 
-// partial: an aggregate that was interrupted and holds its state is written as well. options: where else frames and
-// their state go; NULL = nowhere.
+// partial: an aggregate that was interrupted and holds its state is written as well. options: where else frames,
+// their state and a report go; NULL = nowhere.
 static ty_status write_made(const ty_recipe* recipe, const char* key, const char* output, const ty_color* color,
                             const ty_bytes* state, const ty_scene_options* options, bool partial, ty_workers* workers,
                             ty_error* error)
@@ -207,6 +207,10 @@ static ty_status write_made(const ty_recipe* recipe, const char* key, const char
         made.film = (ty_aggregate_sink){write_film, &writer};
     ty_status status = recipe->generator->make(recipe->def, workers, &made, error), written = TY_OK;
     ty_error write_error = {0};
+    if (made.report && options && options->report)
+        *options->report = made.report;
+    else
+        ty_free(made.report);
     if (made.aggregate && (status != TY_INTERRUPTED || partial))
     {
         sign(&made.aggregate->recipe, &made.aggregate->hash, ty_string_copy(text), key);

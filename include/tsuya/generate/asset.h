@@ -39,6 +39,7 @@ typedef struct ty_made
     ty_mesh* mesh;           // the same
     ty_frame_sink frames;    // given by the caller
     ty_aggregate_sink film;  // given where the caller wants an aggregate as a film; then there is no aggregate
+    char* report;            // of loops: figures, a JSON object as text; the caller frees it with ty_free; else NULL
     const ty_bytes*
         state; // given where the making of an aggregate or of frames goes on from one that is kept; else NULL
 } ty_made;

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// `tsuya loop`: a recipe to frames by number, or to a film, and how seamless it is.
+#include "video.h"
+#include <string.h>
+#include <tsuya/base/log.h>
+#include <tsuya/base/memory.h>
+
+static const char *const film_endings[] = {"gif", "mp4", "mov", "mkv"}, *const endings[] = {"exr", "png", "gif", "mp4",
+                                                                                            "mov", "mkv", NULL};
+
+static bool is_film(const char* output)
+{
+    for (int i = 0; i < TY_PARAM_COUNT(film_endings); i++)
+        if (strcmp(ty_path_extension(output), film_endings[i]) == 0)
+            return true;
+    return false;
+}
+
+// --- the report ---
+
+static double number(const json_t* object, const char* key)
+{
+    return json_number_value(json_object_get(object, key));
+}
+
+static void report_print(const json_t* report)
+{
+    const json_t *size = json_object_get(report, "volume"), *mean = json_object_get(report, "mean");
+    printf("%d frames of %d x %d x %d voxels", (int)number(report, "frames"),
+           (int)json_integer_value(json_array_get(size, 0)), (int)json_integer_value(json_array_get(size, 1)),
+           (int)json_integer_value(json_array_get(size, 2)));
+    if (number(report, "colors") > 0.0)
+        printf(", %d colours", (int)number(report, "colors"));
+    printf("\ninside   %.2f %% of the pixels (%.2f..%.2f)\n", 100.0 * number(mean, "density"),
+           100.0 * number(report, "density_least"), 100.0 * number(report, "density_most"));
+    printf("change   %.2f %% of the pixels a frame, at most %.2f %%; at the seam %.2f %%\n",
+           100.0 * number(mean, "changed"), 100.0 * number(report, "changed_most"),
+           100.0 * number(report, "changed_at_seam"));
+    printf("speed    changes from a frame to the next by at most %.2f %%; at the seam by %.2f %%\n",
+           100.0 * number(report, "speed_jump_most"), 100.0 * number(report, "speed_jump_at_seam"));
+    printf("overlap  %.2f %%, Jaccard %.3f, kappa %.3f, means of all steps\n", 100.0 * number(mean, "overlap"),
+           number(mean, "jaccard"), number(mean, "kappa"));
+    printf("step     at most %.2f voxels; the pattern's wavelength is %.1f: %d frames are enough\n",
+           number(report, "step_most"), number(report, "wavelength"), (int)number(report, "frames_needed"));
+}
+
+static ty_status report_give(const ty_arguments* arguments, const char* output, const char* text)
+{
+    const char* file = ty_argument_text(arguments, "report", NULL);
+    json_t* report = json_loads(text, 0, NULL);
+    if (!report)
+    {
+        ty_log(TY_LOG_ERROR, "the report is no JSON");
+        return TY_INTERNAL;
+    }
+    json_object_set_new(report, "output", ty_json_from_text(output));
+    ty_status status = file ? ty_json_write(file, json_incref(report)) : TY_OK;
+    if (status == TY_OK && ty_argument_has(arguments, "json"))
+        return ty_json_print(report);
+    if (status == TY_OK)
+    {
+        printf("%s\n", output);
+        report_print(report);
+        status = ty_output_finish();
+    }
+    json_decref(report);
+    return status;
+}
+
+// --- the making ---
+
+static ty_status check_output(const ty_arguments* arguments, const char* output)
+{
+    ty_error error;
+    char path[TY_PATH_MAX];
+    if (!output)
+        return ty_usage(arguments->command, "where to? give -o %s", arguments->command->options[0].value);
+    ty_status status = ty_output_check_ending(arguments->command, output, endings);
+    if (status != TY_OK)
+        return status;
+    if (is_film(output) == ty_path_is_sequence(output))
+        return ty_usage(arguments->command,
+                        is_film(output) ? "the film '%s' is one file: it has no #"
+                                        : "the output '%s' needs #### where the number of a frame goes",
+                        output);
+    if (is_film(output) && !ty_video_available())
+        return ty_usage(arguments->command, "there is no ffmpeg in PATH; write frames: -o 'OUT.####.png'");
+    ty_path_frame(output, 1, path);
+    status = ty_output_probe(path, &error);
+    const char* report = ty_argument_text(arguments, "report", NULL);
+    if (status == TY_OK && report)
+        status = ty_output_probe(report, &error);
+    if (status != TY_OK)
+        ty_log_error(&error);
+    return status;
+}
+
+static ty_status make(const ty_arguments* arguments, const char* pattern, ty_scene_arguments* scene_arguments)
+{
+    ty_error_list errors = {0};
+    ty_status status = ty_recipe_make(arguments->positional[0], "loop", pattern, 0, &scene_arguments->options, &errors);
+    ty_errors_log(&errors);
+    return status;
+}
+
+// Frames in a folder of their own, which goes when the film is there.
+static ty_status make_film(const ty_arguments* arguments, const char* output, double fps,
+                           ty_scene_arguments* scene_arguments)
+{
+    static ty_atomic_folder folder; // paths: too large for the stack
+    static char pattern[TY_PATH_MAX];
+    ty_error error;
+    char* name = ty_string_format("%s.frames", output);
+    ty_status status = ty_atomic_folder_begin(&folder, name, &error);
+    ty_free(name);
+    if (status != TY_OK)
+    {
+        ty_log_error(&error);
+        return status;
+    }
+    ty_path_join(folder.temporary, "frame.####.png", pattern);
+    status = make(arguments, pattern, scene_arguments);
+    if (status == TY_OK)
+    {
+        ty_frame_numbers found;
+        ty_frame_list list = {0};
+        status = ty_frame_numbers_find(pattern, &found, &error);
+        if (status == TY_OK)
+        {
+            list = (ty_frame_list){found.numbers, found.count};
+            status = ty_video_write(output, pattern, &list, fps, &error);
+            ty_frame_numbers_term(&found);
+        }
+        if (status != TY_OK)
+            ty_log_error(&error);
+    }
+    ty_atomic_folder_abort(&folder);
+    return status;
+}
+
+static ty_status run(const ty_arguments* arguments)
+{
+    static ty_scene_arguments scene_arguments;
+    const char* output = ty_argument_text(arguments, "output", NULL);
+    double fps = 24.0, start = ty_time_now();
+    char* report = NULL;
+    ty_status status = check_output(arguments, output);
+    if (status == TY_OK && ty_argument_has(arguments, "fps"))
+        status = ty_argument_float(arguments, "fps", 0.1, 1000.0, &fps);
+    if (status == TY_OK)
+        status = ty_scene_arguments_read(arguments, &scene_arguments);
+    if (status != TY_OK)
+        return status;
+    scene_arguments.options.report = &report;
+    status = is_film(output) ? make_film(arguments, output, fps, &scene_arguments)
+                             : make(arguments, output, &scene_arguments);
+    ty_scene_arguments_term(&scene_arguments);
+    if (status == TY_OK)
+    {
+        ty_log(TY_LOG_INFO, "made in %.1f s", ty_time_now() - start);
+        status = report_give(arguments, output, report);
+    }
+    ty_free(report);
+    return status;
+}
+
+static const ty_option options[] = {
+    {"output", 'o', "OUT.####.exr", "the frames to write, from 1: also .png; or a film: .gif, .mp4, .mov, .mkv"},
+    {"fps", 0, "N", "frames a second of a film (default 24)"},
+    {"report", 0, "FILE.json", "the figures of every step as well"},
+    {"json", 0, NULL, "print them instead of a summary"},
+    TY_SCENE_OPTIONS,
+};
+
+const ty_command ty_command_loop = {
+    "loop",
+    "RECIPE -o OUT.####.exr",
+    "cut the frames of a looping texture out of a volume",
+    "tsuya loop scenes/loop_logo/loop.yaml -o out/logo.gif",
+    1,
+    1,
+    options,
+    TY_PARAM_COUNT(options),
+    run,
+};

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+// Slices to pictures: values, edges that cover pixels by shares, colours, moments of an open shutter.
+#include "loop_frame.h"
+#include <string.h>
+#include <tsuya/base/memory.h>
+#include <tsuya/image/color.h>
+
+enum
+{
+    TILE_WIDTH = 128, // pixels that are sampled together, so that what they read stays near
+    TILE_HEIGHT = 16,
+    SHUTTER = 1000 // parts of a frame's time that a shutter is told in
+};
+
+struct ty_loop_painter
+{
+    const ty_loop_recipe* recipe;
+    const ty_loop_volume* volume;
+    ty_workers* workers;
+    ty_loop_sample_fn* sample;
+    int width, height;
+    ty_rgb low, high;
+    ty_rgb colors[TY_LOOP_COLORS];          // of the palette
+    ty_rgb red[256], green[256], blue[256]; // of tints: a colour is the sum of three
+    float *values, *coverage;               // [height][width]
+    // Of the present moment:
+    ty_loop_grid grid;
+    float share;        // of the frame
+    float* channels[3]; // only the first of Y
+};
+
+// --- colours ---
+
+static ty_rgb rgb_at(const float* p)
+{
+    return (ty_rgb){p[0], p[1], p[2]};
+}
+
+// Codes of 8-bit images to ACEScg.
+static ty_status inks_mix(ty_loop_painter* p, ty_error* error)
+{
+    const ty_loop_palette* palette = &p->volume->palette;
+    ty_color* color;
+    float all[TY_LOOP_COLORS + 1 + 3 * 256][3] = {{0.0f}}, *tints = all[TY_LOOP_COLORS + 1];
+    ty_status status = ty_color_create(NULL, &color, error);
+    if (status != TY_OK)
+        return status;
+    for (int k = 0; k < 3; k++)
+    {
+        for (int i = 0; i < palette->count; i++)
+            all[i][k] = (float)palette->colors[i][k] / 255.0f;
+        all[TY_LOOP_COLORS][k] = (float)palette->background[k] / 255.0f;
+        for (int i = 0; i < 256; i++)
+            tints[3 * (k * 256 + i) + k] = (float)i / 255.0f;
+    }
+    status = ty_color_convert(color, "srgb_texture", "ACEScg", all[0], TY_LOOP_COLORS + 1 + 3 * 256, 3, error);
+    ty_color_destroy(color);
+    for (int i = 0; i < TY_LOOP_COLORS; i++)
+        p->colors[i] = rgb_at(all[i]);
+    p->low = rgb_at(all[TY_LOOP_COLORS]);
+    for (int i = 0; i < 256; i++)
+    {
+        p->red[i] = rgb_at(tints + 3 * i);
+        p->green[i] = rgb_at(tints + 3 * (256 + i));
+        p->blue[i] = rgb_at(tints + 3 * (512 + i));
+    }
+    return status;
+}
+
+static ty_rgb color_at(const ty_loop_painter* p, int x, int y)
+{
+    if (!p->volume->labels && !p->volume->tints)
+        return p->high;
+    ty_loop_corners corners = ty_loop_corners_of(p->volume, &p->grid, p->recipe->sampling, x, y);
+    if (p->volume->labels)
+        return p->colors[ty_loop_label_of(p->volume, &corners)];
+    uint8_t c[3] = {0, 0, 0};
+    ty_loop_tint_of(p->volume, &corners, c);
+    return ty_rgb_add(p->red[c[0]], ty_rgb_add(p->green[c[1]], p->blue[c[2]]));
+}
+
+// --- values ---
+
+static void tiles_sample(void* context, int64_t begin, int64_t end, int worker)
+{
+    const ty_loop_painter* p = context;
+    (void)worker;
+    int columns = (p->width + TILE_WIDTH - 1) / TILE_WIDTH;
+    for (int64_t tile = begin; tile < end; tile++)
+    {
+        int x = (int)(tile % columns) * TILE_WIDTH, y = (int)(tile / columns) * TILE_HEIGHT;
+        int right = x + TILE_WIDTH < p->width ? x + TILE_WIDTH : p->width;
+        int bottom = y + TILE_HEIGHT < p->height ? y + TILE_HEIGHT : p->height;
+        for (int j = y; j < bottom; j++)
+            p->sample(p->volume, &p->grid, p->recipe->sampling, j, x, right,
+                      p->values + (size_t)j * (size_t)p->width + (size_t)x);
+    }
+}
+
+ty_status ty_loop_painter_slice(ty_loop_painter* p, int64_t i, int64_t n, const float** out, ty_error* error)
+{
+    p->grid = ty_loop_motion_grid(p->recipe, p->volume->size, i, n);
+    int columns = (p->width + TILE_WIDTH - 1) / TILE_WIDTH, rows = (p->height + TILE_HEIGHT - 1) / TILE_HEIGHT;
+    if (!ty_parallel_for(p->workers, (int64_t)columns * rows, 4, tiles_sample, p))
+        return ty_error_set(error, TY_INTERRUPTED, "interrupted while a frame was made");
+    *out = p->values;
+    return TY_OK;
+}
+
+// --- edges ---
+
+// How much of each pixel of row y is inside: by the distance to the edge that value and slope tell, smooth over one
+// pixel.
+static void row_cover(const ty_loop_painter* p, int y, float* restrict out)
+{
+    int w = p->width;
+    const float* v = p->values + (size_t)y * (size_t)w;
+    const float* up = y > 0 ? v - w : v;
+    const float* down = y < p->height - 1 ? v + w : v;
+    const float iso = p->recipe->iso;
+    if (p->recipe->show_values || p->recipe->sampling == TY_LOOP_NEAREST)
+    {
+        bool values = p->recipe->show_values;
+        for (int x = 0; x < w; x++)
+            out[x] = values ? v[x] : v[x] >= iso ? 1.0f : 0.0f;
+        return;
+    }
+    for (int x = 0; x < w; x++)
+    {
+        int left = x > 0 ? x - 1 : x, right = x < w - 1 ? x + 1 : x;
+        float gx = 0.5f * (v[right] - v[left]), gy = 0.5f * (down[x] - up[x]);
+        float slope = ty_max(sqrtf(gx * gx + gy * gy), 1e-6f);
+        float t = ty_clamp((v[x] - iso) / slope + 0.5f, 0.0f, 1.0f);
+        out[x] = t * t * (3.0f - 2.0f * t);
+    }
+}
+
+static void pixel_add(const ty_loop_painter* p, size_t at, int x, int y, float cover)
+{
+    ty_rgb c = p->low;
+    if (cover > 0.0f)
+    {
+        ty_rgb color = color_at(p, x, y);
+        c = cover < 1.0f ? ty_rgb_lerp(c, color, cover) : color;
+    }
+    const float values[3] = {c.r, c.g, c.b};
+    for (int k = 0; k < 3; k++)
+        if (p->channels[k])
+            p->channels[k][at] += p->share * values[k];
+}
+
+static void rows_paint(void* context, int64_t begin, int64_t end, int worker)
+{
+    const ty_loop_painter* p = context;
+    (void)worker;
+    float* cover = TY_ALLOC(float, p->width);
+    for (int y = (int)begin; y < (int)end; y++)
+    {
+        size_t at = (size_t)y * (size_t)p->width;
+        row_cover(p, y, cover);
+        for (int x = 0; x < p->width; x++, at++)
+        {
+            p->coverage[at] += p->share * cover[x];
+            pixel_add(p, at, x, y, cover[x]);
+        }
+    }
+    ty_free(cover);
+}
+
+// --- frames ---
+
+ty_status ty_loop_painter_create(const ty_loop_recipe* recipe, const ty_loop_volume* volume, ty_workers* workers,
+                                 ty_loop_painter** out, ty_error* error)
+{
+    *out = NULL;
+    ty_loop_painter* p = TY_ALLOC(ty_loop_painter, 1);
+    *p = (ty_loop_painter){.recipe = recipe,
+                           .volume = volume,
+                           .workers = workers,
+                           .sample = ty_loop_sampler(),
+                           .width = recipe->size[0],
+                           .height = recipe->size[1],
+                           .low = recipe->low,
+                           .high = recipe->high};
+    size_t pixels = (size_t)p->width * (size_t)p->height;
+    p->values = TY_TRY_ALLOC(float, pixels);
+    p->coverage = TY_TRY_ALLOC(float, pixels);
+    ty_status status = TY_OK;
+    if (!p->values || !p->coverage)
+        status = ty_error_set(error, TY_NO_MEMORY, "no memory for %d x %d pixels", p->width, p->height);
+    if (status == TY_OK && (volume->labels || volume->tints))
+        status = inks_mix(p, error);
+    if (status == TY_OK)
+        *out = p;
+    else
+        ty_loop_painter_destroy(p);
+    return status;
+}
+
+void ty_loop_painter_destroy(ty_loop_painter* painter)
+{
+    if (!painter)
+        return;
+    ty_free(painter->values);
+    ty_free(painter->coverage);
+    ty_free(painter);
+}
+
+const float* ty_loop_painter_coverage(const ty_loop_painter* painter)
+{
+    return painter->coverage;
+}
+
+static ty_exr* image_make(ty_loop_painter* p)
+{
+    static const char* const names[] = {"R", "G", "B"};
+    static const float ap1[8] = TY_ACESCG_CHROMATICITIES;
+    const int window[4] = {0, 0, p->width - 1, p->height - 1};
+    ty_exr* image = ty_exr_create(window, window);
+    bool grey = !p->volume->labels && !p->volume->tints && p->low.r == p->low.g && p->low.g == p->low.b &&
+                p->high.r == p->high.g && p->high.g == p->high.b;
+    for (int c = 0; c < 3; c++)
+        p->channels[c] = grey && c > 0 ? NULL : ty_exr_add_channel(image, grey ? "Y" : names[c], TY_EXR_HALF);
+    if (!grey)
+        ty_exr_add_chromaticities(image, ap1);
+    return image;
+}
+
+ty_status ty_loop_painter_paint(ty_loop_painter* p, int i, ty_exr** out, ty_error* error)
+{
+    const ty_loop_recipe* recipe = p->recipe;
+    int open = (int)(recipe->blur * (float)SHUTTER + 0.5f), moments = open > 0 ? recipe->blur_samples : 1;
+    int64_t parts = (int64_t)moments * SHUTTER, n = parts * recipe->frames;
+    ty_status status = TY_OK;
+    ty_exr* image = image_make(p);
+    memset(p->coverage, 0, (size_t)p->width * (size_t)p->height * sizeof *p->coverage);
+    p->share = 1.0f / (float)moments;
+    for (int m = 0; m < moments && status == TY_OK; m++)
+    {
+        const float* values;
+        status = ty_loop_painter_slice(p, parts * i + (int64_t)open * m, n, &values, error);
+        if (status == TY_OK && !ty_parallel_for(p->workers, p->height, 16, rows_paint, p))
+            status = ty_error_set(error, TY_INTERRUPTED, "interrupted while a frame was made");
+    }
+    if (status != TY_OK)
+        ty_exr_destroy(image);
+    *out = status == TY_OK ? image : NULL;
+    return status;
+}

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where volumes come from beside reactions: frames of a fill, stacks of pictures, one picture, raw files.
+#include "loop_volume.h"
+#include "plane_file.h"
+#include <stdio.h>
+#include <string.h>
+#include <tsuya/base/file.h>
+#include <tsuya/base/memory.h>
+
+typedef struct source
+{
+    const ty_loop_part* part;
+    int index; // of the part
+    float low, scale;
+    ty_loop_volume* volume;
+} source;
+
+static void slice_put(const source* s, int z, const float* values)
+{
+    int w = s->volume->size[0], h = s->volume->size[1];
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++)
+            s->volume->values[ty_loop_voxel(s->volume, x, y, z)] =
+                ty_loop_number_of((values[(size_t)y * (size_t)w + (size_t)x] - s->low) * s->scale);
+}
+
+// --- fill ---
+
+typedef struct fill_sink
+{
+    const source* s;
+    int count;
+} fill_sink;
+
+// v, Y, or the luminance of R, G, B; else the first channel.
+static const float* channel_of(const ty_exr* image, float** made)
+{
+    static const char *const alone[] = {"v", "Y"}, *const colors[] = {"R", "G", "B"};
+    const ty_exr_channel* found[3];
+    bool all = true;
+    for (int i = 0; i < 2; i++)
+        if (ty_exr_find_channel(image, alone[i]))
+            return ty_exr_find_channel(image, alone[i])->pixels;
+    for (int i = 0; i < 3; i++)
+        all &= (found[i] = ty_exr_find_channel(image, colors[i])) != NULL;
+    if (!all)
+        return image->channels[0].pixels;
+    size_t n = (size_t)ty_exr_width(image) * (size_t)ty_exr_height(image);
+    *made = TY_ALLOC(float, n);
+    for (size_t i = 0; i < n; i++)
+        (*made)[i] = ty_luminance((ty_rgb){((const float*)found[0]->pixels)[i], ((const float*)found[1]->pixels)[i],
+                                           ((const float*)found[2]->pixels)[i]});
+    return *made;
+}
+
+static ty_status fill_take(void* context, int frame, ty_exr* image, ty_error* error)
+{
+    fill_sink* sink = context;
+    const source* s = sink->s;
+    int size[3] = {ty_exr_width(image), ty_exr_height(image), sink->count};
+    ty_status status = TY_OK;
+    if (!s->volume->values)
+        status = ty_loop_volume_create(size, false, false, s->volume, error);
+    if (status == TY_OK && (frame < 1 || frame > sink->count || memcmp(size, s->volume->size, sizeof size) != 0))
+        status = ty_error_set(error, TY_INTERNAL, "volume[%d].fill: frame %d of another size", s->index, frame);
+    if (status != TY_OK)
+        return status;
+    float* made = NULL;
+    slice_put(s, frame - 1, channel_of(image, &made));
+    ty_free(made);
+    return TY_OK;
+}
+
+static ty_status fill_make(const source* s, ty_workers* workers, ty_error* error)
+{
+    fill_sink sink = {s, ty_fill_generator.frame_count(&s->part->fill)};
+    ty_made made = {.frames = {.put = fill_take, .context = &sink}};
+    ty_status status = ty_fill_generator.make(&s->part->fill, workers, &made, error);
+    ty_free(made.report);
+    return status;
+}
+
+// --- pictures ---
+
+static ty_status missing(const source* s, const char* key, const char* what, ty_error* error)
+{
+    return ty_error_set(error, TY_BAD_INPUT, "volume[%d].%s: %s", s->index, key, what);
+}
+
+static ty_status slice_read_colors(const source* s, const char* path, const char* key, int z, ty_error* error)
+{
+    ty_loop_labels labels;
+    ty_loop_volume* v = s->volume;
+    ty_status status =
+        ty_loop_labels_read(path, key, s->part->colors, v->size, z == 0 ? NULL : &v->palette, &labels, error);
+    if (status != TY_OK)
+        return status;
+    if (z == 0)
+        v->palette = labels.palette;
+    for (int y = 0; y < v->size[1]; y++)
+        for (int x = 0; x < v->size[0]; x++)
+        {
+            uint8_t label = labels.labels[(size_t)y * (size_t)v->size[0] + (size_t)x];
+            size_t at = ty_loop_voxel(v, x, y, z);
+            if (label == TY_LOOP_BACKGROUND)
+                continue;
+            v->values[at] = (uint16_t)TY_LOOP_ONE;
+            if (v->labels)
+                v->labels[at] = label;
+            else
+                memcpy(v->tints + 3 * at, v->palette.colors[label], 3);
+        }
+    ty_loop_labels_term(&labels);
+    return TY_OK;
+}
+
+static ty_status slice_read(const source* s, const ty_plane_file* file, int frame, int z, ty_error* error)
+{
+    char path[TY_PATH_MAX];
+    float* values = NULL;
+    if (s->part->colors > 0)
+    {
+        ty_path_frame(file->path, frame, path);
+        return slice_read_colors(s, path, file->key, z, error);
+    }
+    ty_status status = ty_plane_file_read_channel(file, frame, (ty_plane_channel)s->part->channel, &values, error);
+    if (status == TY_OK)
+        slice_put(s, z, values);
+    ty_free(values);
+    return status;
+}
+
+// Every frame from the first to the last that is there.
+static ty_status frames_find(const char* path, int* first, int* last, ty_error* error)
+{
+    ty_frame_numbers numbers;
+    *first = *last = 0;
+    if (!ty_path_is_sequence(path))
+        return TY_OK;
+    ty_status status = ty_frame_numbers_find(path, &numbers, error);
+    if (status != TY_OK)
+        return status;
+    *first = numbers.numbers[0];
+    *last = numbers.numbers[numbers.count - 1];
+    ty_frame_numbers_term(&numbers);
+    return TY_OK;
+}
+
+// The first slice once more in every one.
+static void slices_repeat(ty_loop_volume* v)
+{
+    for (size_t z = 1; z < (size_t)v->size[2]; z++)
+    {
+        memcpy(v->values + z * v->slice, v->values, v->slice * sizeof *v->values);
+        if (v->labels)
+            memcpy(v->labels + z * v->slice, v->labels, v->slice);
+        if (v->tints)
+            memcpy(v->tints + 3 * z * v->slice, v->tints, 3 * v->slice);
+    }
+}
+
+static ty_status pictures_make(const source* s, ty_error* error)
+{
+    char key[64];
+    int first = 0, last = 0;
+    const ty_loop_part* part = s->part;
+    bool stack = part->source == TY_LOOP_STACK;
+    snprintf(key, sizeof key, "volume[%d].files", s->index);
+    if (!part->files)
+        return missing(s, "files", "missing; the pictures of the volume", error);
+    if (stack != ty_path_is_sequence(part->files))
+        return missing(s, "files",
+                       stack ? "a stack is named with #### for the number of the slice"
+                             : "a still is one picture, without #",
+                       error);
+    ty_status status = frames_find(part->files, &first, &last, error);
+    ty_plane_file file;
+    if (status == TY_OK)
+        status = ty_plane_file_open(part->files, key, first, last, &file, error);
+    if (status != TY_OK)
+        return status;
+    int count = last - first + 1;
+    if (stack && count > TY_LOOP_DEPTH)
+        return ty_error_set(error, TY_BAD_INPUT, "%s: %d slices; at most %d", key, count, TY_LOOP_DEPTH);
+    int size[3] = {file.width, file.height, stack ? count : part->depth};
+    status = ty_loop_volume_create(size, part->colors > 0, part->mix == TY_LOOP_MIX_BLEND, s->volume, error);
+    for (int i = 0; i < count && status == TY_OK; i++)
+    {
+        status = slice_read(s, &file, first + i, i, error);
+        if (status == TY_OK && ty_cancel_requested())
+            status = ty_error_set(error, TY_INTERRUPTED, "interrupted while pictures were read");
+    }
+    if (status == TY_OK && !stack)
+        slices_repeat(s->volume);
+    return status;
+}
+
+// --- raw ---
+
+static float number_at(const ty_loop_raw* raw, const uint8_t* bytes, size_t i)
+{
+    uint8_t b[4];
+    size_t size = raw->type == TY_LOOP_U8 ? 1 : raw->type == TY_LOOP_U16 ? 2 : 4;
+    for (size_t k = 0; k < size; k++) // little-endian, as our machines are
+        b[k] = bytes[i * size + (raw->big_endian ? size - 1 - k : k)];
+    uint32_t bits = b[0];
+    for (size_t k = 1; k < size; k++)
+        bits |= (uint32_t)b[k] << (8 * k);
+    float value;
+    if (raw->type == TY_LOOP_U8)
+        return (float)bits / 255.0f;
+    if (raw->type == TY_LOOP_U16)
+        return (float)bits / 65535.0f;
+    memcpy(&value, &bits, sizeof value);
+    return isfinite(value) ? value : 0.0f;
+}
+
+static ty_status raw_make(const source* s, ty_error* error)
+{
+    const ty_loop_raw* raw = &s->part->raw;
+    if (!raw->file)
+        return missing(s, "raw.file", "missing; the numbers of the volume", error);
+    const int size[3] = {raw->width, raw->height, raw->depth};
+    static const char* const sides[] = {"raw.width", "raw.height", "raw.depth"};
+    for (int k = 0; k < 3; k++)
+        if (size[k] < 1)
+            return missing(s, sides[k], "the volume is empty; 1..2048 voxels", error);
+    size_t width = raw->type == TY_LOOP_U8 ? 1 : raw->type == TY_LOOP_U16 ? 2 : 4;
+    size_t voxels = (size_t)size[0] * (size_t)size[1] * (size_t)size[2], want = voxels * width + (size_t)raw->header;
+    ty_bytes bytes;
+    ty_status status = ty_file_read(raw->file, (size_t)64 << 30, &bytes, error);
+    if (status != TY_OK)
+        return status;
+    if (bytes.size != want)
+        status = ty_error_set(error, TY_BAD_INPUT,
+                              "volume[%d].raw: '%s' has %zu bytes; %d x %d x %d numbers of %zu and a header of %d are "
+                              "%zu",
+                              s->index, raw->file, bytes.size, size[0], size[1], size[2], width, raw->header, want);
+    if (status == TY_OK)
+        status = ty_loop_volume_create(size, false, false, s->volume, error);
+    size_t i = 0;
+    for (int z = 0; z < size[2] && status == TY_OK; z++)
+        for (int y = 0; y < size[1]; y++)
+            for (int x = 0; x < size[0]; x++, i++)
+                s->volume->values[ty_loop_voxel(s->volume, x, y, z)] =
+                    ty_loop_number_of((number_at(raw, bytes.data + raw->header, i) - s->low) * s->scale);
+    ty_bytes_term(&bytes);
+    return status;
+}
+
+ty_status ty_loop_source_make(const ty_loop_part* part, int index, ty_workers* workers, ty_loop_volume* out,
+                              ty_error* error)
+{
+    bool given = part->range[0] != 0.0f || part->range[1] != 0.0f;
+    *out = (ty_loop_volume){0};
+    if (given && part->range[0] == part->range[1])
+        return ty_error_set(error, TY_BAD_INPUT, "volume[%d].range: [%g, %g]; two different numbers", index,
+                            (double)part->range[0], (double)part->range[1]);
+    float low = given ? part->range[0] : 0.0f, high = given ? part->range[1] : 1.0f;
+    source s = {part, index, low, 1.0f / (high - low), out};
+    ty_status status;
+    switch ((ty_loop_source)part->source)
+    {
+    case TY_LOOP_REACTION:
+        return ty_loop_reaction_make(part, index, workers, out, error);
+    case TY_LOOP_FILL:
+        status = fill_make(&s, workers, error);
+        break;
+    case TY_LOOP_RAW:
+        status = raw_make(&s, error);
+        break;
+    default:
+        status = pictures_make(&s, error);
+        break;
+    }
+    out->wrap[0] = out->wrap[1] = part->wraps;
+    if (status != TY_OK)
+        ty_loop_volume_term(out);
+    return status;
+}
