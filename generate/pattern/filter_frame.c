@@ -10,7 +10,8 @@ enum
 {
     TONES = 32,
     LEVELS = 512,
-    ENOUGH = 4096 // cells that tell a threshold
+    ENOUGH = 4096, // cells that tell a threshold
+    CORRECTIONS = 4
 };
 
 // --- thresholds ---
@@ -98,6 +99,32 @@ static float threshold_at(const calibration* c, float tone, float softness)
     return ty_lerp(c->above[i], c->above[i + 1], f);
 }
 
+// 0 = low, 1 = high, by how far U is over its threshold.
+static float level_of(const ty_filter_recipe* r, float over)
+{
+    return ty_smoothstep(ty_clamp(0.5f + 0.5f * over / r->softness, 0.0f, 1.0f));
+}
+
+// Where the pattern of a place is brighter than its tones, thresholds rise there, and the other way.
+static ty_status correct_places(const ty_filter_run* run, int field, float* over, ty_error* error)
+{
+    const float gain = 2.0f, sigma = 4.0f * sqrtf(2.0f * ty_filter_turing_def(run->recipe).v.diffusion); // 0.4 spots
+    size_t size = (size_t)run->width * (size_t)run->height;
+    float* lack = TY_TRY_ALLOC(float, 2 * size);
+    if (!lack)
+        return ty_error_set(error, TY_NO_MEMORY, "no memory for a frame");
+    for (int pass = 0; pass < CORRECTIONS; pass++)
+    {
+        for (size_t i = 0; i < size; i++)
+            lack[i] = lives(run, i) ? run->picture.tone[field][i] - level_of(run->recipe, over[i]) : 0.0f;
+        ty_filter_blur(lack, lack + size, run->width, run->height, sigma);
+        for (size_t i = 0; i < size; i++)
+            over[i] += gain * lack[i];
+    }
+    ty_free(lack);
+    return TY_OK;
+}
+
 // U over the threshold of its cell, in place.
 static ty_status over_threshold(const ty_filter_run* run, int field, float* u, ty_error* error)
 {
@@ -119,7 +146,7 @@ static ty_status over_threshold(const ty_filter_run* run, int field, float* u, t
         u[i] -= run->alive ? ty_lerp(r->threshold, threshold, run->alive[i]) : threshold;
     }
     ty_free(c);
-    return TY_OK;
+    return c ? correct_places(run, field, u, error) : TY_OK;
 }
 
 // --- pixels ---
@@ -169,7 +196,7 @@ static float line_level(const ty_filter_run* run, const float* line, int x)
     cubic_weights(at - whole, weight);
     for (int k = 0; k < 4; k++)
         over += weight[k] * line[neighbour(run, (int)whole - 1 + k, run->width)];
-    return ty_smoothstep(ty_clamp(0.5f + 0.5f * over * (float)r->scale / r->softness, 0.0f, 1.0f));
+    return level_of(r, over * (float)r->scale);
 }
 
 static void pixel_set(const ty_filter_run* run, const float level[3], size_t cell, float* out)
