@@ -25,7 +25,7 @@ static ty_status check_pattern(const ty_command* command, const char* pattern, c
     return status;
 }
 
-static ty_status check_state(const ty_command* command, const char* path)
+ty_status ty_output_check_state(const ty_command* command, const char* path)
 {
     ty_error error;
     ty_status status = ty_output_check_ending(command, path, state_endings);
@@ -50,7 +50,7 @@ static ty_status check_outputs(const ty_arguments* arguments)
     if (status == TY_OK && png)
         status = check_pattern(arguments->command, png, picture_endings);
     if (status == TY_OK && state)
-        status = check_state(arguments->command, state);
+        status = ty_output_check_state(arguments->command, state);
     return status;
 }
 

@@ -54,7 +54,8 @@ static ty_status check_output(const ty_arguments* arguments, const product* p, c
     ty_status status = ty_output_check_ending(arguments->command, output, p->extensions);
     if (status != TY_OK)
         return status;
-    if (ty_path_is_sequence(output) && ty_argument_has(arguments, "resume"))
+    bool film = ty_path_is_sequence(output) && strcmp(p->kind, "aggregate") == 0;
+    if (film && ty_argument_has(arguments, "resume"))
         return ty_usage(arguments->command, "--resume goes on to one file; a film begins at its beginning");
     if (ty_path_is_sequence(output) ? !p->is_sequence : !p->is_file)
         return ty_usage(arguments->command,
@@ -65,7 +66,8 @@ static ty_status check_output(const ty_arguments* arguments, const product* p, c
     status = ty_output_probe(path, &error); // before minutes of work
     if (status != TY_OK)
         ty_log_error(&error);
-    return status;
+    const char* state = ty_argument_text(arguments, "state", NULL);
+    return status == TY_OK && state ? ty_output_check_state(arguments->command, state) : status;
 }
 
 // An image after the recipe: the recipe's own, found from where the command is typed.
@@ -103,6 +105,7 @@ static ty_status run(const ty_arguments* arguments)
     if (status != TY_OK)
         return status;
     scene_arguments.options.resume = ty_argument_text(arguments, "resume", NULL);
+    scene_arguments.options.state = ty_argument_text(arguments, "state", NULL);
     ty_error_list errors = {0};
     double start = ty_time_now();
     status = ty_recipe_make(arguments->positional[0], p->kind, output, (int)element, &scene_arguments.options, &errors);
@@ -128,7 +131,12 @@ static const ty_option pack_options[] = {
     {"element", 0, "N", "instead one of its elements alone, from 1, as a mesh: .ply"},
     TY_SCENE_OPTIONS,
 };
-OPTIONS(filter_options, "OUT.png", "the picture to write, .png or .exr; with #### the frames, from 1");
+static const ty_option filter_options[] = {
+    {"output", 'o', "OUT.png", "the picture to write, .png or .exr; with #### the frames, from 1"},
+    {"state", 0, "FILE.exr", "where the reaction's state is kept, at its end or when it is interrupted"},
+    {"resume", 0, "FILE.exr", "go on from that state: the same picture as without a stop, or a later one"},
+    TY_SCENE_OPTIONS,
+};
 OPTIONS(roots_options, "OUT.ply", "the mesh to write");
 
 const ty_command ty_command_pack = {

@@ -17,16 +17,12 @@ static bool starts_anew(const ty_filter_run* run, int frame)
     return frame == 1 || (run->sequence && run->recipe->mode != TY_FILTER_TONE);
 }
 
-// Steps of a frame after the one before it, or after its beginning.
-static int64_t steps_of(const ty_filter_run* run, int frame)
+int64_t ty_filter_steps(const ty_filter_run* run, int frame)
 {
     const ty_filter_recipe* r = run->recipe;
-    double dt = (double)ty_turing_time_step(run->fields[0]);
-    double end = (double)r->time + (frame - 1) * (double)r->time_per_frame;
-    int64_t at = (int64_t)floor((double)r->time / dt + 0.5);
-    if (starts_anew(run, frame))
-        return at;
-    return (int64_t)floor(end / dt + 0.5) - (int64_t)floor((end - (double)r->time_per_frame) / dt + 0.5);
+    bool anew = run->sequence && r->mode != TY_FILTER_TONE;
+    double end = (double)r->time + (anew ? 0.0 : (frame - 1) * (double)r->time_per_frame);
+    return (int64_t)floor(end / (double)ty_turing_time_step(run->fields[0]) + 0.5);
 }
 
 // The reaction's own beginning is chance, the same in every field so that greys stay grey; a picture's is the picture.
@@ -47,36 +43,42 @@ static void field_begin(const ty_filter_run* run, int number)
     }
 }
 
-static ty_status advance(ty_filter_run* run, int64_t steps, ty_error* error)
+static ty_status advance(ty_filter_run* run, int64_t to, ty_error* error)
 {
-    for (int64_t done = 0; done < steps; done += CHUNK_STEPS)
+    while (run->step < to)
     {
-        int count = steps - done < CHUNK_STEPS ? (int)(steps - done) : CHUNK_STEPS;
+        int count = to - run->step < CHUNK_STEPS ? (int)(to - run->step) : CHUNK_STEPS;
+        if (ty_cancel_requested())
+            return ty_error_set(error, TY_INTERRUPTED, "interrupted at step %lld of %lld of frame %d of %d",
+                                (long long)run->step, (long long)to, run->frame, run->frame_count);
         for (int f = 0; f < run->field_count; f++)
             ty_turing_step(run->fields[f], count, run->workers);
-        if (ty_cancel_requested())
-            return ty_error_set(error, TY_INTERRUPTED, "interrupted at step %lld of %lld", (long long)run->steps_done,
-                                (long long)run->steps_all);
+        run->step += count;
         run->steps_done += count;
         ty_progress_update(&run->progress, (double)run->steps_done / (double)run->steps_all, NULL);
     }
     return TY_OK;
 }
 
-static ty_status frame_make(ty_filter_run* run, int frame, const ty_frame_sink* sink, ty_error* error)
+// resumed: the fields are in the middle of it.
+static ty_status frame_make(ty_filter_run* run, int frame, bool resumed, const ty_frame_sink* sink, ty_error* error)
 {
     ty_status status = TY_OK;
-    if (frame == 1 || run->sequence)
+    bool anew = starts_anew(run, frame) && !resumed;
+    run->frame = frame;
+    run->step = anew ? 0 : run->step;
+    if (!run->picture.tone[0] || run->sequence)
     {
         ty_filter_picture_term(&run->picture);
         status = ty_filter_picture_read(run, frame, &run->picture, error);
         if (status == TY_OK)
             status = ty_filter_guide(run, frame, error);
     }
-    for (int f = 0; f < run->field_count && status == TY_OK && starts_anew(run, frame); f++)
+    for (int f = 0; f < run->field_count && status == TY_OK && anew; f++)
         field_begin(run, f);
+    run->begun |= status == TY_OK;
     if (status == TY_OK)
-        status = advance(run, steps_of(run, frame), error);
+        status = advance(run, ty_filter_steps(run, frame), error);
     ty_exr* image = NULL;
     if (status == TY_OK)
         status = ty_filter_frame(run, &image, error);
@@ -84,6 +86,27 @@ static ty_status frame_make(ty_filter_run* run, int frame, const ty_frame_sink* 
         status = sink->put(sink->context, frame, image, error);
     ty_exr_destroy(image);
     return status;
+}
+
+static ty_status frames_make(ty_filter_run* run, const ty_frame_sink* sink, const ty_bytes* state, ty_error* error)
+{
+    ty_status status = state ? ty_filter_state_load(run, state, error) : TY_OK, kept = TY_OK;
+    int first = state ? run->frame : 1;
+    if (status != TY_OK)
+        return status;
+    for (int frame = first; frame <= run->frame_count; frame++)
+        run->steps_all += ty_filter_steps(run, frame) - (starts_anew(run, frame) ? 0 : ty_filter_steps(run, frame - 1));
+    for (int frame = first; frame <= run->frame_count && status == TY_OK; frame++)
+        status = frame_make(run, frame, state && frame == first, sink, error);
+    if (!sink->keep || !run->begun || (status != TY_OK && status != TY_INTERRUPTED))
+        return status;
+    ty_error keep_error;
+    ty_exr* left = ty_filter_state_save(run);
+    kept = sink->keep(sink->context, left, &keep_error);
+    ty_exr_destroy(left);
+    if (kept != TY_OK && error)
+        *error = keep_error;
+    return kept != TY_OK ? kept : status;
 }
 
 // --- before the first step ---
@@ -129,8 +152,6 @@ static ty_status fields_create(ty_filter_run* run, ty_error* error)
     ty_status status = TY_OK;
     for (int f = 0; f < run->field_count && status == TY_OK; f++)
         status = ty_turing_create(&def, &run->fields[f], error);
-    for (int frame = 1; frame <= run->frame_count && status == TY_OK; frame++)
-        run->steps_all += steps_of(run, frame);
     return status;
 }
 
@@ -145,15 +166,15 @@ static ty_status prepare(ty_filter_run* run, ty_error* error)
     return status == TY_OK ? fields_create(run, error) : status;
 }
 
-ty_status ty_filter_make(const void* def, ty_workers* workers, const ty_frame_sink* sink, ty_error* error)
+ty_status ty_filter_make(const void* def, ty_workers* workers, const ty_frame_sink* sink, const ty_bytes* state,
+                         ty_error* error)
 {
     ty_filter_run run = {.recipe = def, .workers = workers};
     ty_status status = prepare(&run, error);
     if (status == TY_OK)
     {
         ty_progress_begin(&run.progress, "filter");
-        for (int frame = 1; frame <= run.frame_count && status == TY_OK; frame++)
-            status = frame_make(&run, frame, sink, error);
+        status = frames_make(&run, sink, state, error);
         ty_progress_end(&run.progress);
     }
     for (int f = 0; f < TY_FILTER_FIELDS; f++)

@@ -304,7 +304,7 @@ static int frame_count(const void* def)
 
 static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_error* error)
 {
-    return ty_filter_make(def, workers, &out->frames, error);
+    return ty_filter_make(def, workers, &out->frames, out->state, error);
 }
 
 const ty_generator ty_filter_generator = {

@@ -30,9 +30,19 @@ typedef struct ty_filter_run
     float* alive;              // how much the pattern lives in each cell, 0..1; NULL = everywhere
     ty_turing* fields[TY_FILTER_FIELDS];
     int field_count;
-    int64_t steps_done, steps_all; // of each field
+    bool begun;                    // the fields hold a state of `frame`
+    int frame;                     // that is made, or was last; 0 = none yet
+    int64_t step;                  // of the reaction since it began, with the frame or before
+    int64_t steps_done, steps_all; // for the progress
     ty_progress progress;
 } ty_filter_run;
+
+// filter_make.c: the step of its reaction that a frame shows.
+int64_t ty_filter_steps(const ty_filter_run* run, int frame);
+
+// filter_state.c: what a run goes on from, and into the run; the caller's.
+ty_exr* ty_filter_state_save(const ty_filter_run* run);
+TY_CHECKED ty_status ty_filter_state_load(ty_filter_run* run, const ty_bytes* bytes, ty_error* error);
 
 // filter_picture.c: the image of a frame (from 1) at the field's size.
 TY_CHECKED ty_status ty_filter_picture_read(const ty_filter_run* run, int frame, ty_filter_picture* out,

@@ -216,7 +216,10 @@ bool stream_steps(stream* s, int step_count, ty_workers* workers)
     {
         pass p = pass_plan(s, step_count, crew);
         scratch_reserve(s, p.worker_size * (size_t)crew);
-        if (!ty_parallel_for(workers, (int64_t)p.strips * p.bands, 1, tiles_make, &p))
+        int64_t tiles = (int64_t)p.strips * p.bands;
+        if (s->whole)
+            ty_parallel_all(workers, tiles, 1, tiles_make, &p);
+        else if (!ty_parallel_for(workers, tiles, 1, tiles_make, &p))
             return false;
         for (int i = 0; i < s->plane_count; i++)
         {

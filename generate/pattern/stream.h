@@ -43,6 +43,7 @@ typedef struct stream
     float* back[STREAM_PLANES];  // the same for the moment to come; swapped after a pass
     stream_row_fn* row;
     const void* context;
+    bool whole; // all steps are done, cancelled or not: for few at a time
     int depth, strip,
         bands;      // of a pass: steps, cells across, parts of the height; 0: chosen. For measurements and tests
     float* scratch; // the stream's own

@@ -134,7 +134,8 @@ ty_status ty_turing_create(const ty_turing_def* def, ty_turing** out, ty_error* 
                              .plane_count = 2,
                              .stride = stream_stride(def->width),
                              .row = row_choose(),
-                             .context = field};
+                             .context = field,
+                             .whole = true};
     field->constant = plane_alloc(field);
     if (!planes_alloc(&field->stream) || !field->constant || (def->edge == TY_TURING_FIXED && !hold_alloc(field)))
     {

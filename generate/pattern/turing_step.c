@@ -78,5 +78,5 @@ void ty_turing_step(ty_turing* field, int step_count, ty_workers* workers)
     ty_parallel_all(workers, field->def.height, PIECE_CELLS / field->def.width + 1, rows_prepare, field);
     if (field->planes[TY_TURING_OPEN])
         open_around(field);
-    (void)!stream_steps(&field->stream, step_count, workers); // who has cancelled knows it
+    (void)!stream_steps(&field->stream, step_count, workers); // whole
 }

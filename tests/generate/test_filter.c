@@ -43,8 +43,8 @@ static void forget(frames* f)
 
 static ty_status try_make(const ty_filter_recipe* recipe, ty_workers* workers, frames* out, ty_error* error)
 {
-    const ty_frame_sink sink = {keep, out};
-    return ty_filter_make(recipe, workers, &sink, error);
+    const ty_frame_sink sink = {keep, NULL, out};
+    return ty_filter_make(recipe, workers, &sink, NULL, error);
 }
 
 static void make(const ty_filter_recipe* recipe, frames* out)
@@ -244,7 +244,9 @@ static float even_grey(int x, int y, int c)
 static ty_filter_recipe small(const char* image)
 {
     ty_filter_recipe recipe = ty_filter_recipe_default();
-    recipe.image = image;
+    static char kept[200]; // in_folder forgets
+    if (image)
+        recipe.image = strcpy(kept, image);
     recipe.time = 600.0f;
     return recipe;
 }
@@ -457,6 +459,125 @@ static void workers_change_no_bit(void** state)
     forget(&reference);
 }
 
+// --- stop and resume ---
+
+typedef struct stopping
+{
+    frames frames;
+    int stop_after; // frames; 0 = not at all
+    bool kept;
+} stopping;
+
+static ty_status put_and_stop(void* context, int frame, ty_exr* image, ty_error* error)
+{
+    stopping* s = context;
+    ty_status status = keep(&s->frames, frame, image, error);
+    if (s->frames.count == s->stop_after)
+        ty_cancel_request(0);
+    return status;
+}
+
+static ty_status keep_state(void* context, ty_exr* state, ty_error* error)
+{
+    stopping* s = context;
+    assert_false(s->kept);
+    s->kept = true;
+    return ty_exr_write(in_folder("state.exr"), state, error);
+}
+
+static ty_status make_from(const ty_filter_recipe* recipe, stopping* s, const char* from, ty_error* error)
+{
+    const ty_frame_sink sink = {put_and_stop, keep_state, s};
+    ty_bytes state = {0};
+    if (from)
+        assert_int_equal(ty_file_read(from, 1 << 24, &state, error), TY_OK);
+    ty_status status = ty_filter_make(recipe, NULL, &sink, from ? &state : NULL, error);
+    ty_bytes_term(&state);
+    ty_cancel_clear();
+    return status;
+}
+
+static void a_stop_changes_no_bit(void** state)
+{
+    (void)state;
+    ty_error error = {0};
+    write_image(in_folder("grey.png"), 96, 96, even_grey);
+    ty_filter_recipe recipe = small(in_folder("grey.png"));
+    recipe.time = 100.0f;
+    recipe.frames = 4;
+    recipe.color = TY_FILTER_CHANNELS;
+    frames whole = {0};
+    make(&recipe, &whole);
+    stopping first = {.stop_after = 2}, rest = {0}, further = {0};
+    assert_int_equal(make_from(&recipe, &first, NULL, &error), TY_INTERRUPTED);
+    assert_true(first.kept);
+    assert_int_equal(first.frames.count, 2);
+    assert_int_equal(make_from(&recipe, &rest, in_folder("state.exr"), &error), TY_OK);
+    assert_int_equal(rest.frames.count, 2);
+    for (int i = 1; i <= 4; i++)
+        assert_equal_images(&whole.images[i], i <= 2 ? &first.frames.images[i] : &rest.frames.images[i]);
+    // In the middle of a frame, whenever the stop comes.
+    ty_cancel_request(0);
+    forget(&first.frames);
+    first = (stopping){0};
+    assert_int_equal(make_from(&recipe, &first, NULL, &error), TY_INTERRUPTED);
+    forget(&rest.frames);
+    rest = (stopping){0};
+    assert_int_equal(make_from(&recipe, &rest, in_folder("state.exr"), &error), TY_OK);
+    assert_equal_images(&whole.images[4], &rest.frames.images[4]);
+    // From its end to a later one.
+    recipe.frames = 6;
+    forget(&whole);
+    make(&recipe, &whole);
+    assert_int_equal(make_from(&recipe, &further, in_folder("state.exr"), &error), TY_OK);
+    for (int i = 4; i <= 6; i++)
+        assert_equal_images(&whole.images[i], &further.frames.images[i]);
+    forget(&whole);
+    forget(&first.frames);
+    forget(&rest.frames);
+    forget(&further.frames);
+}
+
+static void a_state_of_something_else_is_refused(void** state)
+{
+    (void)state;
+    ty_error error = {0};
+    stopping s = {0};
+    write_image(in_folder("grey.png"), 96, 96, even_grey);
+    ty_filter_recipe recipe = small(in_folder("grey.png"));
+    recipe.time = 20.0f;
+    recipe.frames = 2;
+    assert_int_equal(make_from(&recipe, &s, NULL, &error), TY_OK);
+    forget(&s.frames);
+    static const char* const texts[] = {"not one of a filter", "cells: [50, 96]; the state to go on from has 96 x 96",
+                                        "1 fields for 3", "frames: 1; the state is in frame 2",
+                                        "frame 2 ends at step 111 and the state is at step 133"};
+    for (int i = 0; i < 5; i++)
+    {
+        ty_filter_recipe other = recipe;
+        s.kept = false;
+        other.cells[0] = i == 1 ? 50 : 0;
+        other.cells[1] = i == 1 ? 96 : 0;
+        other.color = i == 2 ? TY_FILTER_CHANNELS : TY_FILTER_GREY;
+        other.frames = i == 3 ? 1 : 2;
+        other.time = i == 4 ? 10.0f : 20.0f;
+        if (i == 0)
+        {
+            const int window[4] = {0, 0, 95, 95};
+            ty_exr* exr = ty_exr_create(window, window);
+            ty_exr_add_channel(exr, "u0", TY_EXR_FLOAT);
+            assert_int_equal(ty_exr_write(in_folder("other.exr"), exr, &error), TY_OK);
+            ty_exr_destroy(exr);
+        }
+        ty_status status = make_from(&other, &s, in_folder(i ? "state.exr" : "other.exr"), &error);
+        assert_int_equal(status, i ? TY_BAD_INPUT : TY_BAD_FILE);
+        if (!strstr(error.text, texts[i]))
+            fail_msg("'%s' is not in: %s", texts[i], error.text);
+        assert_false(s.kept);
+        assert_int_equal(s.frames.count, 0);
+    }
+}
+
 // --- mistakes ---
 
 static void mistakes_are_named(void** state)
@@ -524,6 +645,8 @@ int main(void)
         cmocka_unit_test(frames_are_moments_of_one_reaction),
         cmocka_unit_test(sequences_go_in_and_out),
         cmocka_unit_test(workers_change_no_bit),
+        cmocka_unit_test(a_stop_changes_no_bit),
+        cmocka_unit_test(a_state_of_something_else_is_refused),
         cmocka_unit_test(mistakes_are_named),
         cmocka_unit_test(memory_that_is_refused_is_said),
     };

@@ -97,6 +97,8 @@ ty_filter_recipe ty_filter_recipe_default(void);
 const ty_param_table* ty_filter_recipe_params(void);
 // The field's definition that a recipe comes to, but for its size.
 ty_turing_def ty_filter_turing_def(const ty_filter_recipe* recipe);
-// def is a ty_filter_recipe; as ty_generator's make.
-TY_CHECKED ty_status ty_filter_make(const void* def, ty_workers* workers, const ty_frame_sink* sink, ty_error* error);
+// def is a ty_filter_recipe; as ty_generator's make. Goes on from what sink->keep was given, as a file, where there is
+// a state: in the middle of a frame as well; `time` and `frames` may be larger than they were.
+TY_CHECKED ty_status ty_filter_make(const void* def, ty_workers* workers, const ty_frame_sink* sink,
+                                    const ty_bytes* state, ty_error* error);
 extern const ty_generator ty_filter_generator;

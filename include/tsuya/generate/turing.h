@@ -83,5 +83,5 @@ bool ty_turing_has(const ty_turing* field, ty_turing_plane plane);    // whether
 float* ty_turing_row(ty_turing* field, ty_turing_plane plane, int y); // of a plane that is needed
 
 // Forward Euler with the 5-point Laplacian (9 points where U's is anisotropic). The same bits for any worker count and
-// any CPU. Cannot fail; when cancelled the values are of no use.
+// any CPU. Cannot fail; all steps are made, cancelled or not.
 void ty_turing_step(ty_turing* field, int step_count, ty_workers* workers);
