@@ -95,21 +95,44 @@ static ty_status read_open(const char* path, const char* format, ty_oiio_input* 
     return TY_OK;
 }
 
+static ty_status input_open(const char* path, const char** format, size_t* size, ty_oiio_input** input,
+                            ty_oiio_info* info, ty_error* error)
+{
+    char text[512];
+    ty_status status = inspect(path, format, size, error);
+    if (status)
+        return status;
+    ty_oiio_result result = ty_oiio_open(*format, path, input, info, text, sizeof text);
+    return result == TY_OIIO_OK ? TY_OK : shim_status(result, path, "cannot read image", text, error);
+}
+
 ty_status ty_image_read(const char* path, ty_image* out, ty_error* error)
 {
     *out = (ty_image){0};
     const char* format = NULL;
     size_t size = 0;
-    ty_status status = inspect(path, &format, &size, error);
-    if (status)
-        return status;
-    char text[512];
     ty_oiio_input* input = NULL;
     ty_oiio_info info;
-    ty_oiio_result result = ty_oiio_open(format, path, &input, &info, text, sizeof text);
-    if (result != TY_OIIO_OK)
-        return shim_status(result, path, "cannot read image", text, error);
+    ty_status status = input_open(path, &format, &size, &input, &info, error);
+    if (status)
+        return status;
     status = read_open(path, format, input, &info, size, out, error);
+    ty_oiio_close(input);
+    return status;
+}
+
+ty_status ty_image_read_size(const char* path, int* width, int* height, ty_error* error)
+{
+    const char* format = NULL;
+    size_t size = 0;
+    ty_oiio_input* input = NULL;
+    ty_oiio_info info;
+    ty_status status = input_open(path, &format, &size, &input, &info, error);
+    if (status)
+        return status;
+    status = check_info(path, format, &info, size, error);
+    *width = info.width;
+    *height = info.height;
     ty_oiio_close(input);
     return status;
 }

@@ -10,7 +10,7 @@ enum
     MEASURE = 3000
 };
 
-// A disc closes in 72 r where a straight front goes .01456 a unit of time: 1.048 times later than the front alone.
+// A disc closes in 72 r where a straight front goes .01456 a unit of time: 1.048 times later than it would.
 static const double curved = 72.0 * 0.01456;
 
 static float front_place(ty_gray_scott* field, float level)
@@ -71,8 +71,8 @@ static ty_status hole_radius(const fill_run* run, int event, double* out, ty_err
         double dy = (double)run->near_y[i] - (double)(i / (size_t)run->width), d = sqrt(dx * dx + dy * dy);
         most = d > most ? d : most;
     }
-    *out = most - 0.5; // from the outline, which lies between cells
-    return most > 0.5 ? TY_OK : ty_error_set(error, TY_BAD_INPUT, "events[%d].close: the hole holds no cell", event);
+    *out = most + 0.5; // its middle may lie between four cells, .7 from each, the outline half a cell before the next
+    return most > 0.0 ? TY_OK : ty_error_set(error, TY_BAD_INPUT, "events[%d].close: the hole holds no cell", event);
 }
 
 ty_status fill_solve_steps(fill_run* run, ty_error* error)

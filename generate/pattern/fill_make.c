@@ -146,7 +146,8 @@ static ty_status frame_make(making* m, int frame, ty_error* error)
     ty_status status = advance(m, step_of(&m->run, frame), error);
     if (status != TY_OK)
         return status;
-    trail_note(&m->run, frame, frame > 1);
+    if (frame > 1)
+        trail_note(&m->run, frame, true);
     status = fill_frame_events(&m->run, frame, error);
     if (status != TY_OK)
         return status;

@@ -1,52 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mattes: each layer's share of a pixel. Layers are marks by cell; smoothed by a quadratic B-spline their shares add up
+// Mattes: each layer's share of a pixel. Layers are marks by cell; smoothed by a quartic B-spline their shares add up
 // to 1 everywhere, and the lead of each over the next sharpens them to an edge of one pixel. Marks that follow the
 // pattern are laid over them.
 #include "fill_show.h"
 #include <math.h>
 
-// The quadratic B-spline's weights of the cells before, at and after the one that holds t, 0..1 within it.
-static void spline_weights(float t, float w[3])
+// The quartic B-spline's weights of five cells, the third of which holds t, 0..1 within it.
+static void spline_weights(float t, float w[5])
 {
-    w[0] = 0.5f * (1.0f - t) * (1.0f - t);
-    w[2] = 0.5f * t * t;
-    w[1] = 1.0f - w[0] - w[2];
+    float u = 1.0f - t;
+    w[0] = u * u * u * u / 24.0f;
+    w[1] = (11.0f + t * (-12.0f + t * (-6.0f + t * (12.0f - 4.0f * t)))) / 24.0f;
+    w[3] = (11.0f + u * (-12.0f + u * (-6.0f + u * (12.0f - 4.0f * u)))) / 24.0f;
+    w[4] = t * t * t * t / 24.0f;
+    w[2] = 1.0f - w[0] - w[1] - w[3] - w[4];
 }
 
 static int near_cell(int i, int n, bool wrap)
 {
     if (wrap)
-        return (i + n) % n;
+        return (i + n) % n; // n is at least 8
     return i < 0 ? 0 : i >= n ? n - 1 : i;
 }
 
-// Smoothed shares of the layers about a pixel; the layer, when there is but one, else -1.
-static int shares(const fill_show_state* show, int x, int y, float share[FILL_LAYERS])
+// Smoothed shares of the layers about a pixel.
+static void shares(const fill_show_state* show, int x, int y, int cx, int cy, float share[FILL_LAYERS])
 {
     const fill_run* run = show->run;
     float scale = (float)run->recipe->scale, px = ((float)x + 0.5f) / scale + show->drift;
-    float py = ((float)y + 0.5f) / scale, wx[3], wy[3];
-    int cx, cy;
-    fill_pixel_cell(show, x, y, &cx, &cy);
+    float py = ((float)y + 0.5f) / scale, wx[5], wy[5];
     spline_weights(px - floorf(px), wx);
     spline_weights(py - (float)cy, wy);
-    int first = show->layers[fill_cell(run, cx, cy)];
-    bool single = true;
-    for (int j = 0; j < 3; j++)
-        for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 5; j++)
+        for (int i = 0; i < 5; i++)
         {
-            size_t at = fill_cell(run, near_cell(cx + i - 1, run->width, run->wrap_x),
-                                  near_cell(cy + j - 1, run->height, run->wrap_y));
-            single = single && show->layers[at] == first;
+            size_t at = fill_cell(run, near_cell(cx + i - 2, run->width, run->wrap_x),
+                                  near_cell(cy + j - 2, run->height, run->wrap_y));
             share[show->layers[at]] += wx[i] * wy[j];
         }
-    return single ? first : -1;
 }
 
-// A straight edge gives the lead 1.5 a cell: one pixel of it is to go from 0 to 1.
+bool fill_is_single(const fill_show_state* show, int x, int y)
+{
+    const fill_run* run = show->run;
+    uint8_t first = show->layers[fill_cell(run, x, y)];
+    for (int j = -2; j <= 2; j++)
+        for (int i = -2; i <= 2; i++)
+            if (show->layers[fill_cell(run, near_cell(x + i, run->width, run->wrap_x),
+                                       near_cell(y + j, run->height, run->wrap_y))] != first)
+                return false;
+    return true;
+}
+
+// A straight edge gives the lead 1.2 a cell: one pixel of it is to go from 0 to 1.
 static void sharpen(const fill_show_state* show, const float share[FILL_LAYERS], float matte[FILL_LAYERS])
 {
-    float gain = 4.0f * (float)show->run->recipe->scale / 3.0f, sum = 0.0f;
+    float gain = (float)show->run->recipe->scale / 0.6f, sum = 0.0f;
     float first = 0.0f, second = 0.0f;
     for (int k = 0; k < FILL_LAYERS; k++)
     {
@@ -118,12 +127,18 @@ static void auto_lay(float matte[FILL_LAYERS], int mark, int over, float share)
 void fill_matte(const fill_show_state* show, int x, int y, float matte[FILL_LAYERS])
 {
     const ty_fill_auto* autos = show->run->recipe->autos.items;
-    float share[FILL_LAYERS] = {0};
-    int single = shares(show, x, y, share);
-    if (single < 0)
+    int cx, cy;
+    fill_pixel_cell(show, x, y, &cx, &cy);
+    size_t cell = fill_cell(show->run, cx, cy);
+    if (show->single[cell])
+        for (int k = 0; k < FILL_LAYERS; k++)
+            matte[k] = k == show->layers[cell] ? 1.0f : 0.0f;
+    else
+    {
+        float share[FILL_LAYERS] = {0};
+        shares(show, x, y, cx, cy, share);
         sharpen(show, share, matte);
-    for (int k = 0; k < FILL_LAYERS && single >= 0; k++)
-        matte[k] = k == single ? 1.0f : 0.0f;
+    }
     for (int i = 0; i < show->run->recipe->autos.count; i++)
         auto_lay(matte, show->auto_marks[i], show->auto_over[i], auto_share(show, &autos[i], x, y));
 }

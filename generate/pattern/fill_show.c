@@ -104,6 +104,9 @@ static void layers_take(fill_show_state* show)
             show->layers[at] = run->closed[at] ? FILL_CLOSED : (uint8_t)(marks[x] & (TY_GRAY_SCOTT_MARKS - 1));
         }
     }
+    for (int y = 0; y < run->height; y++)
+        for (int x = 0; x < run->width; x++)
+            show->single[fill_cell(run, x, y)] = fill_is_single(show, x, y);
     const ty_fill_auto* autos = run->recipe->autos.items;
     for (int i = 0; i < run->recipe->autos.count; i++)
     {
@@ -123,8 +126,9 @@ static ty_status planes_fill(fill_show_state* show, float** made, ty_error* erro
     show->v = show->v ? show->v : made[0];
     show->distance = show->distance ? show->distance : made[1];
     show->layers = TY_TRY_ALLOC(uint8_t, fill_cells(run));
+    show->single = TY_TRY_ALLOC(bool, fill_cells(run));
     show->auto_marks = TY_TRY_ALLOC(int, 2 * run->recipe->autos.count);
-    if (!show->v || (distance && !show->distance) || !show->layers || !show->auto_marks)
+    if (!show->v || (distance && !show->distance) || !show->layers || !show->single || !show->auto_marks)
         return ty_error_set(error, TY_NO_MEMORY, "no memory for a frame of %d x %d", show->width, show->height);
     show->auto_over = show->auto_marks + run->recipe->autos.count;
     layers_take(show);
@@ -252,6 +256,7 @@ ty_status fill_show(const fill_run* run, int frame, float drift, ty_exr** out, t
         ty_planes_term(&show.images[i / 2][i % 2]);
     ty_planes_term(&show.over);
     ty_free(show.layers);
+    ty_free(show.single);
     ty_free(show.auto_marks);
     if (status != TY_OK)
     {

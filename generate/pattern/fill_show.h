@@ -10,6 +10,7 @@ typedef struct fill_show_state
     float drift;                 // cells
     float *u, *v, *distance;     // [height][width], NULL where nobody asks
     uint8_t* layers;             // by cell: the mark, or FILL_CLOSED
+    bool* single;                // by cell: all layers within two cells are the same
     int *auto_marks, *auto_over; // by rule; over -1: all
     ty_planes images[TY_GRAY_SCOTT_MARKS][2], over;
     float* color[3]; // channels of the frame; the second and third NULL for Y
@@ -24,5 +25,6 @@ void fill_pixel_cell(const fill_show_state* show, int x, int y, int* cell_x, int
 
 // fill_matte.c: how much of pixel (x, y) each layer has: they add up to 1.
 void fill_matte(const fill_show_state* show, int x, int y, float matte[FILL_LAYERS]);
+bool fill_is_single(const fill_show_state* show, int x, int y); // of the cell, for `single`
 // 0 below the level, 1 above it, the share of the pixel between.
 float fill_coverage(const fill_show_state* show, int x, int y);

@@ -28,35 +28,48 @@ static ty_status frames_check(const char* path, const char* key, int first, int 
                         last, missing);
 }
 
+static ty_status size_check(const ty_plane_file* file, const char* path, int width, int height, ty_error* error)
+{
+    if (width == file->width && height == file->height)
+        return TY_OK;
+    return ty_error_set(error, TY_BAD_INPUT, "%s: '%s' has %d x %d pixels, the first has %d x %d", file->key, path,
+                        width, height, file->width, file->height);
+}
+
 static ty_status image_read(const ty_plane_file* file, int frame, ty_image* image, ty_error* error)
 {
     char path[TY_PATH_MAX];
     ty_path_frame(file->path, frame, path);
     ty_status status = ty_image_read(path, image, error);
-    if (status != TY_OK || file->width == 0 || (image->width == file->width && image->height == file->height))
+    if (status != TY_OK)
         return status;
-    status = ty_error_set(error, TY_BAD_INPUT, "%s: '%s' has %d x %d pixels, the first has %d x %d", file->key, path,
-                          image->width, image->height, file->width, file->height);
-    ty_image_term(image);
+    status = size_check(file, path, image->width, image->height, error); // it may have changed since
+    if (status != TY_OK)
+        ty_image_term(image);
     return status;
 }
 
 ty_status ty_plane_file_open(const char* path, const char* key, int first, int last, ty_plane_file* out,
                              ty_error* error)
 {
+    char name[TY_PATH_MAX];
+    bool sequence = ty_path_is_sequence(path);
     *out = (ty_plane_file){path, key, 0, 0};
-    ty_status status = TY_OK;
-    if (ty_path_is_sequence(path))
-        status = frames_check(path, key, first, last, error);
-    ty_image image;
-    if (status == TY_OK)
-        status = image_read(out, first, &image, error);
-    if (status != TY_OK)
-        return status;
-    out->width = image.width;
-    out->height = image.height;
-    ty_image_term(&image);
-    return TY_OK;
+    ty_status status = sequence ? frames_check(path, key, first, last, error) : TY_OK;
+    for (int frame = first; frame <= (sequence ? last : first) && status == TY_OK; frame++)
+    {
+        int width, height;
+        ty_path_frame(path, frame, name);
+        status = ty_image_read_size(name, &width, &height, error);
+        if (status == TY_OK && frame == first)
+        {
+            out->width = width;
+            out->height = height;
+        }
+        if (status == TY_OK)
+            status = size_check(out, name, width, height, error);
+    }
+    return status;
 }
 
 // Interleaved to planes; channels beyond `count` are left out.

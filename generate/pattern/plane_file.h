@@ -31,8 +31,8 @@ typedef struct ty_plane_file
     int width, height;
 } ty_plane_file;
 
-// Looks whether the file is there, or every frame from first to last of a sequence, and reads its size. Without a
-// frame: TY_BAD_INPUT with the numbers that are missing.
+// Looks whether the file is there, or every frame from first to last of a sequence, and reads their sizes. Without a
+// frame, or with frames of two sizes: TY_BAD_INPUT that tells which.
 TY_CHECKED ty_status ty_plane_file_open(const char* path, const char* key, int first, int last, ty_plane_file* out,
                                         ty_error* error);
 // The file, or that frame of the sequence. One of another size than the first: TY_BAD_INPUT with both sizes.

@@ -247,7 +247,7 @@ static void impossible_ones_are_refused(void** state)
     ty_status status = ty_fill_make(&recipe, NULL, &sink, &error);
     ty_cancel_clear();
     assert_int_equal(status, TY_INTERRUPTED);
-    for (long i = 0; i < 13; i++) // the field, its planes, the plan, the frame
+    for (long i = 0; i < 14; i++) // the field, its planes, the plan, the frame
     {
         ty_memory_fail_after(i);
         assert_int_equal(ty_fill_make(&recipe, NULL, &sink, &error), TY_NO_MEMORY);

@@ -18,6 +18,9 @@ void ty_image_term(ty_image* image);
 // memory is taken. Alpha as stored.
 TY_CHECKED ty_status ty_image_read(const char* path, ty_image* out, ty_error* error);
 
+// What the header says, after the same checks; no pixels are decoded.
+TY_CHECKED ty_status ty_image_read_size(const char* path, int* width, int* height, ty_error* error);
+
 // Writes PNG (8 or 16 bit), JPEG or TIFF by extension, atomically; values clamp to 0..1. channels 1, 3 or 4. bits 8 or
 // 16; 8 bit is dithered by nothing: equal input, equal bytes. JPEG has 8 bits and no alpha.
 TY_CHECKED ty_status ty_image_write(const char* path, const ty_image* image, int bits, ty_error* error);

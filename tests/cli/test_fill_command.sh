@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+# Fills: what they refuse and where, pictures and channels beside the frames, runs that stop and go on.
+cat >heal.yaml <<'Y'
+tsuya: 1
+kind: fill
+cells: [64, 48]
+scale: 2
+tile: none
+start: plain
+marks:
+  - { name: skin, preset: plain, color: [0.6, 0.3, 0.2], ground: [0.2, 0.02, 0.02] }
+  - { name: wound, preset: dying, color: [0.5, 0.1, 0.1], ground: [0.2, 0.02, 0.02] }
+run: { frames: 6, steps: 40 }
+events:
+  - { at: 2, op: hole, center: [30, 24], radius: 12 }
+  - { at: 3, op: mark, mark: wound, shape: rectangle, center: [30, 24], size: [6, 6] }
+Y
+cat >mask.yaml <<'Y'
+tsuya: 1
+kind: fill
+cells: [32, 24]
+scale: 2
+run: { frames: 4, steps: 5 }
+start: plain
+preset: plain
+Y
+
+# The command line.
+expect 2 "$tsuya" fill heal.yaml -o out.exr
+says "####"
+expect 2 "$tsuya" fill heal.yaml -o 'out.##.jpg'
+says ".exr or .png"
+expect 2 "$tsuya" fill heal.yaml -o 'out.##.exr' --png out.png
+expect 2 "$tsuya" fill heal.yaml -o 'out.##.exr' --state 'state.##.exr'
+says "it has no #"
+expect 4 "$tsuya" fill heal.yaml -o 'out.##.exr' --resume nowhere.exr
+
+# What is wrong in a recipe is told at its line, with what would do, before anything is made.
+refuse()
+{
+    local at=$1 text=$2
+    shift 2
+    expect 3 "$tsuya" fill "$@"
+    says "$at"
+    says "$text"
+    absent out.01.exr
+}
+sed 's/at: 3, op: mark, mark: wound/at: 3, op: mark, mark: wuond/' heal.yaml >bad.yaml
+refuse "bad.yaml:13:24" "no mark 'wuond' in the table; it has 0 skin, 1 wound" bad.yaml -o 'out.##.exr'
+sed 's/at: 3, op/at: 7, op/' heal.yaml >bad.yaml
+refuse "bad.yaml:13:7" "7 lies after the run: it has frames 1..6" bad.yaml -o 'out.##.exr'
+sed 's/op: hole,/op: whole,/' heal.yaml >bad.yaml
+refuse "bad.yaml:12:18" "did you mean 'hole'" bad.yaml -o 'out.##.exr'
+sed 's/preset: dying/preset: dieing/' heal.yaml >bad.yaml
+refuse "bad.yaml:9:28" "'dieing' is not one of" bad.yaml -o 'out.##.exr'
+sed 's/radius: 12/radius: -1/' heal.yaml >bad.yaml
+refuse "bad.yaml:12:50" "out of range" bad.yaml -o 'out.##.exr'
+sed 's/radius: 12/radius: 12, close: 4, mark: wound/' heal.yaml >bad.yaml
+refuse "bad.yaml:12" "no front moves into it" bad.yaml -o 'out.##.exr'
+refuse "time_step" "above 0 and below" heal.yaml -o 'out.##.exr' --set time_step=1.4
+refuse "outputs" "'w' is none of u, v" heal.yaml -o 'out.##.exr' --also v,w
+refuse "events" "they need run.frames" heal.yaml -o 'out.##.exr' --set run.frames=0
+
+# A rate without a plain state is a warning.
+expect 0 "$tsuya" fill mask.yaml -o 'plain.#.png' --set preset=stripes --set kill=0.064
+says "there is a plain state up to kill"
+
+# Masks: of the cells' size or of a frame's, with all their frames.
+expect 0 "$tsuya" fill mask.yaml -o 'small.#.png' --set scale=1
+expect 0 "$tsuya" fill mask.yaml -o 'large.#.png'
+expect 0 "$tsuya" fill mask.yaml -o 'm.#.exr' --set region.mask=small.1.png --also mark,mattes
+expect 0 "$tsuya" fill mask.yaml -o 'm.#.exr' --set region.mask=large.1.png
+expect 0 "$tsuya" fill mask.yaml -o 'm.#.exr' --set 'region.mask=large.#.png'
+rm large.3.png
+refuse "region.mask" "lacks 1 of the frames 1..4: 3" mask.yaml -o 'out.##.exr' --set 'region.mask=large.#.png'
+refuse "region.mask" "those of the cells, 30 x 24, or of a frame, 60 x 48" mask.yaml -o 'out.##.exr' --set cells='[30,24]' --set region.mask=small.1.png
+says "--set region.mask=small.1.png"
+refuse "over" "32 x 24 pixels; here it has 64 x 48" mask.yaml -o 'out.##.exr' --set over=small.1.png
+cp small.1.png large.3.png
+refuse "region.mask" "has 32 x 24 pixels, the first has 64 x 48" mask.yaml -o 'out.##.exr' --set 'region.mask=large.#.png'
+
+# Pictures beside frames, more channels, and a run that goes on to the bit where it was stopped.
+expect 0 "$tsuya" fill heal.yaml -o 'whole.##.exr' --png 'whole.##.png' --also u,v,mark,trail,distance,mattes
+expect 0 "$tsuya" info whole.06.exr
+prints "matte.wound"
+prints "distance"
+expect 0 "$tsuya" fill heal.yaml -o 'part.##.exr' --set run.frames=4 --also u,v,mark,trail,distance,mattes --state part.state.exr -t 1
+expect 0 "$tsuya" fill heal.yaml -o 'rest.##.exr' --also u,v,mark,trail,distance,mattes --resume part.state.exr --state rest.state.exr
+absent rest.04.exr
+expect 0 "$tsuya" compare whole.06.exr rest.06.exr --fail 'rmse>0'
+same whole.06.exr rest.06.exr
+refuse "run.frames" "there is nothing to go on to" heal.yaml -o 'out.##.exr' --resume rest.state.exr
+refuse "cells" "the state to go on from has 64 x 48" heal.yaml -o 'out.##.exr' --set cells='[64,64]' --resume part.state.exr
+expect 4 "$tsuya" fill heal.yaml -o 'out.##.exr' --resume whole.01.exr
+says "is not one of a fill"
+
+# Interrupted: what it leaves goes on.
+expect 130 timeout --preserve-status -s INT 1 "$tsuya" fill heal.yaml -o 'stop.####.exr' --set run.frames=4000 --state stop.state.exr
+ls stop.*.exr >list.txt
+grep -q stop.state.exr list.txt || fail "no state is left"
+last=$(grep -v state list.txt | tail -1 | cut -d. -f2)
+expect 0 "$tsuya" fill heal.yaml -o 'on.####.exr' --set run.frames=$((10#$last + 1)) --resume stop.state.exr
+[ "$(ls on.*.exr | wc -l)" -eq 1 ] || fail "one frame is left to make"
