@@ -69,8 +69,6 @@ static ty_status inks_mix(ty_loop_painter* p, ty_error* error)
 
 static ty_rgb color_at(const ty_loop_painter* p, int x, int y)
 {
-    if (!p->volume->labels && !p->volume->tints)
-        return p->high;
     ty_loop_corners corners = ty_loop_corners_of(p->volume, &p->grid, p->recipe->sampling, x, y);
     if (p->volume->labels)
         return p->colors[ty_loop_label_of(p->volume, &corners)];
@@ -109,8 +107,15 @@ ty_status ty_loop_painter_slice(ty_loop_painter* p, int64_t i, int64_t n, const 
 
 // --- edges ---
 
-// How much of each pixel of row y is inside: by the distance to the edge that value and slope tell, smooth over one
-// pixel.
+// How much of a pixel is inside: by the distance to the edge that value and slope tell, smooth over one pixel.
+static inline float cover(float left, float v, float right, float up, float down, float iso)
+{
+    float gx = 0.5f * (right - left), gy = 0.5f * (down - up);
+    float slope = ty_max(sqrtf(gx * gx + gy * gy), 1e-6f);
+    float t = ty_clamp((v - iso) / slope + 0.5f, 0.0f, 1.0f);
+    return t * t * (3.0f - 2.0f * t);
+}
+
 static void row_cover(const ty_loop_painter* p, int y, float* restrict out)
 {
     int w = p->width;
@@ -125,46 +130,59 @@ static void row_cover(const ty_loop_painter* p, int y, float* restrict out)
             out[x] = values ? v[x] : v[x] >= iso ? 1.0f : 0.0f;
         return;
     }
-    for (int x = 0; x < w; x++)
+    for (int x = 0; x<w; x += w> 1 ? w - 1 : 1) // the ends, which have one neighbour
+        out[x] = cover(v[x > 0 ? x - 1 : x], v[x], v[x < w - 1 ? x + 1 : x], up[x], down[x], iso);
+    for (int x = 1; x < w - 1; x++)
+        out[x] = cover(v[x - 1], v[x], v[x + 1], up[x], down[x], iso);
+}
+
+// low where share is 0, high where it is 1, exactly.
+static inline float between(float low, float high, float share)
+{
+    return (1.0f - share) * low + share * high;
+}
+
+static void row_paint(const ty_loop_painter* p, int y, const float* restrict covers)
+{
+    const float low[3] = {p->low.r, p->low.g, p->low.b}, high[3] = {p->high.r, p->high.g, p->high.b};
+    size_t first = (size_t)y * (size_t)p->width;
+    for (int k = 0; k < 3; k++)
     {
-        int left = x > 0 ? x - 1 : x, right = x < w - 1 ? x + 1 : x;
-        float gx = 0.5f * (v[right] - v[left]), gy = 0.5f * (down[x] - up[x]);
-        float slope = ty_max(sqrtf(gx * gx + gy * gy), 1e-6f);
-        float t = ty_clamp((v[x] - iso) / slope + 0.5f, 0.0f, 1.0f);
-        out[x] = t * t * (3.0f - 2.0f * t);
+        float* restrict out = p->channels[k] ? p->channels[k] + first : NULL;
+        for (int x = 0; out && x < p->width; x++)
+            out[x] += p->share * between(low[k], high[k], covers[x]);
     }
 }
 
-static void pixel_add(const ty_loop_painter* p, size_t at, int x, int y, float cover)
+static void row_paint_colors(const ty_loop_painter* p, int y, const float* covers)
 {
-    ty_rgb c = p->low;
-    if (cover > 0.0f)
+    size_t at = (size_t)y * (size_t)p->width;
+    for (int x = 0; x < p->width; x++, at++)
     {
-        ty_rgb color = color_at(p, x, y);
-        c = cover < 1.0f ? ty_rgb_lerp(c, color, cover) : color;
+        ty_rgb color = covers[x] > 0.0f ? color_at(p, x, y) : p->low;
+        p->channels[0][at] += p->share * between(p->low.r, color.r, covers[x]);
+        p->channels[1][at] += p->share * between(p->low.g, color.g, covers[x]);
+        p->channels[2][at] += p->share * between(p->low.b, color.b, covers[x]);
     }
-    const float values[3] = {c.r, c.g, c.b};
-    for (int k = 0; k < 3; k++)
-        if (p->channels[k])
-            p->channels[k][at] += p->share * values[k];
 }
 
 static void rows_paint(void* context, int64_t begin, int64_t end, int worker)
 {
     const ty_loop_painter* p = context;
     (void)worker;
-    float* cover = TY_ALLOC(float, p->width);
+    float* covers = TY_ALLOC(float, p->width);
     for (int y = (int)begin; y < (int)end; y++)
     {
-        size_t at = (size_t)y * (size_t)p->width;
-        row_cover(p, y, cover);
-        for (int x = 0; x < p->width; x++, at++)
-        {
-            p->coverage[at] += p->share * cover[x];
-            pixel_add(p, at, x, y, cover[x]);
-        }
+        float* coverage = p->coverage + (size_t)y * (size_t)p->width;
+        row_cover(p, y, covers);
+        for (int x = 0; x < p->width; x++)
+            coverage[x] += p->share * covers[x];
+        if (p->volume->labels || p->volume->tints)
+            row_paint_colors(p, y, covers);
+        else
+            row_paint(p, y, covers);
     }
-    ty_free(cover);
+    ty_free(covers);
 }
 
 // --- frames ---
