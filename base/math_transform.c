@@ -69,12 +69,6 @@ ty_affine ty_affine_look_at(ty_vec3 position, ty_vec3 target, ty_vec3 up)
     return (ty_affine){x, ty_cross(z, x), z, position};
 }
 
-ty_quat ty_quat_multiply(ty_quat a, ty_quat b)
-{
-    return (ty_quat){a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-                     a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
-}
-
 ty_quat ty_quat_axis_angle(ty_vec3 unit_axis, float angle)
 {
     float s, c;
@@ -88,15 +82,6 @@ ty_quat ty_quat_euler(ty_vec3 xyz)
     ty_quat y = ty_quat_axis_angle((ty_vec3){0, 1, 0}, xyz.y);
     ty_quat z = ty_quat_axis_angle((ty_vec3){0, 0, 1}, xyz.z);
     return ty_quat_multiply(z, ty_quat_multiply(y, x));
-}
-
-ty_quat ty_quat_normalize(ty_quat q)
-{
-    float length = sqrtf(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-    if (!(length > 0.0f))
-        return ty_quat_identity();
-    float s = 1.0f / length;
-    return (ty_quat){q.x * s, q.y * s, q.z * s, q.w * s};
 }
 
 ty_vec3 ty_quat_rotate(ty_quat q, ty_vec3 v)

@@ -97,7 +97,7 @@ ty_affine ty_pile_frame(const ty_pile* pile, int i)
 {
     const ty_body* body = &pile->bodies[i];
     float size = body->scale * pile->growth;
-    ty_affine frame = ty_affine_from_trs(body->position, body->rotation, ty_vec3_make(size, size, size));
+    ty_affine frame = pile_frame_of(body->position, body->rotation, size);
     return pile->bends ? ty_affine_multiply(&frame, &pile->bends[i].map) : frame;
 }
 

@@ -238,27 +238,19 @@ static void blocks_range(void* context, int64_t begin, int64_t end, int worker)
         r->fn(r->context, i, r->blocks->first[i], r->blocks->first[i + 1]);
 }
 
-static void blocks_share(const pair_blocks* b, int from, int to, int grain, ty_workers* workers, block_fn* fn,
-                         void* context)
+void pair_blocks_sweep(const pair_blocks* b, ty_workers* workers, block_fn* fn, void* context)
 {
     enum
     {
-        WORTH_SHARING = 384, // pairs; below, waking a thread costs more than it gives
+        WORTH_SHARING = 384, // pairs of a class; below, waking a thread costs more than it gives
     };
-    blocks_run r = {b, from, fn, context};
-    if (from == to)
-        return;
-    bool share = b->first[to] - b->first[from] >= WORTH_SHARING;
-    ty_parallel_all(share ? workers : NULL, to - from, share ? grain : to - from, blocks_range, &r);
-}
-
-void pair_blocks_sweep(const pair_blocks* b, ty_workers* workers, block_fn* fn, void* context)
-{
     for (int c = 0; c < BLOCK_CLASSES; c++)
-        blocks_share(b, b->class_first[c], b->class_first[c + 1], 1, workers, fn, context);
-}
-
-void pair_blocks_each(const pair_blocks* b, ty_workers* workers, block_fn* fn, void* context)
-{
-    blocks_share(b, 0, b->count, 4, workers, fn, context);
+    {
+        blocks_run r = {b, b->class_first[c], fn, context};
+        int count = b->class_first[c + 1] - r.from;
+        if (count == 0)
+            continue;
+        bool share = b->first[r.from + count] - b->first[r.from] >= WORTH_SHARING;
+        ty_parallel_all(share ? workers : NULL, count, share ? 1 : count, blocks_range, &r);
+    }
 }

@@ -64,5 +64,3 @@ void pair_blocks_make(pair_blocks* blocks, const body_grid* grid, const void* pa
 // Runs fn over each block and its range of the order, class after class; blocks of one class at the same time.
 typedef void block_fn(void* context, int block, int begin, int end);
 void pair_blocks_sweep(const pair_blocks* blocks, ty_workers* workers, block_fn* fn, void* context);
-// The same all at once, for what writes to the pairs alone.
-void pair_blocks_each(const pair_blocks* blocks, ty_workers* workers, block_fn* fn, void* context);

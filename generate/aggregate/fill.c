@@ -226,27 +226,42 @@ static ty_status darts_round(darts* d, ty_rng* rng, int count, ty_error* error)
 
 typedef struct sort_key
 {
-    int layer, row;
-    float x;
+    uint64_t code;
     ty_vec3 p;
 } sort_key;
 
 static int sort_order(const void* a, const void* b)
 {
     const sort_key *p = a, *q = b;
-    if (p->layer != q->layer)
-        return p->layer - q->layer;
-    if (p->row != q->row)
-        return p->row - q->row;
-    return (p->x > q->x) - (p->x < q->x);
+    if (p->code != q->code)
+        return p->code < q->code ? -1 : 1;
+    if (p->p.y != q->p.y)
+        return p->p.y < q->p.y ? -1 : 1;
+    return p->p.x != q->p.x ? (p->p.x > q->p.x) - (p->p.x < q->p.x) : (p->p.z > q->p.z) - (p->p.z < q->p.z);
 }
 
-static void points_sort(ty_vec3* points, int count, ty_vec3 low, float block)
+// Every third bit.
+static uint64_t bits_spread(uint64_t x)
+{
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    return (x | x << 2) & 0x1249249249249249;
+}
+
+// Along a curve through cells on which neighbours in space are neighbours in memory (Morton 1966).
+static void points_sort(ty_vec3* points, int count, ty_vec3 low, float cell)
 {
     sort_key* keys = TY_ALLOC(sort_key, count);
     for (int i = 0; i < count; i++)
-        keys[i] = (sort_key){(int)((points[i].y - low.y) / block), (int)((points[i].z - low.z) / block), points[i].x,
-                             points[i]};
+    {
+        ty_vec3 at = ty_mul(ty_sub(points[i], low), 1.0f / cell);
+        uint64_t x = bits_spread((uint64_t)ty_clamp(at.x, 0.0f, 65535.0f));
+        uint64_t y = bits_spread((uint64_t)ty_clamp(at.y, 0.0f, 65535.0f));
+        uint64_t z = bits_spread((uint64_t)ty_clamp(at.z, 0.0f, 65535.0f));
+        keys[i] = (sort_key){x | z << 1 | y << 2, points[i]};
+    }
     qsort(keys, (size_t)count, sizeof *keys, sort_order);
     for (int i = 0; i < count; i++)
         points[i] = keys[i].p;
@@ -263,7 +278,7 @@ ty_status ty_fill_seeds(const ty_container* container, const ty_fill_top* top, f
     // A saturated set has about .73 / r^3 points a volume; at nine tenths of that radius few darts are wasted.
     double each = volume / (double)count;
     d.radius = 0.9f * ty_pow((float)(0.73 * each), 1.0f / 3.0f);
-    float spacing = 2.0f * d.radius;
+    float cell = 2.0f * d.radius;
     ty_vec3 box = ty_sub(d.space.bounds.high, d.space.bounds.low);
     double hits = ty_max(1e-4f, (float)volume / (box.x * box.y * box.z)); // share of the darts that fall into the space
     d.tries = (int64_t)(60.0 * (double)count / hits);
@@ -276,6 +291,6 @@ ty_status ty_fill_seeds(const ty_container* container, const ty_fill_top* top, f
     }
     if (d.count < count)
         return ty_error_set(error, TY_BAD_INPUT, "only %d of %d grains find a place in the container", d.count, count);
-    points_sort(out, count, d.space.bounds.low, spacing);
+    points_sort(out, count, d.space.bounds.low, cell);
     return TY_OK;
 }

@@ -13,6 +13,7 @@ TY_CHECKED ty_status ty_fill_plan(const ty_container* container, double volume, 
 double ty_fill_space(const ty_container* container, float level, float heap, float inset);
 
 // count points at even distances (Poisson disk: Bridson 2007 by dart throwing) below top, at least inset off the walls,
-// sorted bottom-up in blocks of spacing. Deterministic in seed. volume as planned for; out has room for count.
+// in an order in which neighbours are near each other. Deterministic in seed. volume as planned for; out has room for
+// count.
 TY_CHECKED ty_status ty_fill_seeds(const ty_container* container, const ty_fill_top* top, float inset, double volume,
                                    ty_seed seed, int count, ty_vec3* out, ty_error* error);

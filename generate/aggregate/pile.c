@@ -35,8 +35,8 @@ void ty_pile_destroy(ty_pile* pile)
     void* arrays[] = {pile->bodies,       pile->poses,         pile->motions,        pile->balls,
                       pile->ball_first,   pile->near.pairs,    pile->near.places,    pile->near.touches,
                       pile->former.pairs, pile->former.places, pile->former.touches, pile->contacts,
-                      pile->blocks.first, pile->slots,         pile->walls,          pile->solid,
-                      pile->rolls,        pile->bends};
+                      pile->blocks.first, pile->walls,         pile->solid,          pile->rolls,
+                      pile->bends};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         ty_free(arrays[i]);
     ty_free(pile);
@@ -219,7 +219,7 @@ void pile_refresh(ty_pile* pile, int i)
 {
     const ty_body* body = &pile->bodies[i];
     const ty_element* grain = &pile->def.grains[body->grain];
-    ty_affine turned = ty_affine_from_trs(body->position, body->rotation, ty_vec3_make(1.0f, 1.0f, 1.0f));
+    ty_affine turned = pile_frame_of(body->position, body->rotation, 1.0f);
     float size = body->scale * pile->growth;
     pose* at = &pile->poses[i];
     at->frame = turned;

@@ -131,8 +131,6 @@ struct ty_pile
     pair_blocks blocks;      // of near
     contact* contacts;
     int contact_capacity;
-    int* slots; // [blocks + 1], where each block's contacts begin
-    int slot_capacity;
     ty_wall_motion_fn* wall_fn;
     void* wall_context;
     moving_wall* walls; // NULL = they stand still
@@ -147,6 +145,18 @@ struct ty_pile
 static inline ty_ball* pile_balls(const ty_pile* pile, int body)
 {
     return pile->balls + pile->ball_first[body];
+}
+
+// Turned and scaled to a size, then shifted: as ty_affine_from_trs, in half its steps.
+static inline ty_affine pile_frame_of(ty_vec3 t, ty_quat q, float size)
+{
+    float twice = 2.0f * size, x = twice * q.x, y = twice * q.y, z = twice * q.z;
+    float xx = x * q.x, yy = y * q.y, zz = z * q.z, xy = x * q.y, xz = x * q.z, yz = y * q.z;
+    float wx = x * q.w, wy = y * q.w, wz = z * q.w;
+    return (ty_affine){{size - (yy + zz), xy + wz, xz - wy},
+                       {xy - wz, size - (xx + zz), yz + wx},
+                       {xz + wy, yz - wx, size - (xx + yy)},
+                       t};
 }
 
 // By how much a body reaches farther than its element.

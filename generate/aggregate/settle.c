@@ -92,66 +92,19 @@ static void touch_unload(touch* t)
     t->tangent_impulse = ty_vec3_make(0.0f, 0.0f, 0.0f);
 }
 
-// How many touches of a pair may be contacts of this substep. The others lose their impulses.
-static int pair_look(ty_pile* pile, pair* p)
+// The contacts of a pair from slot on.
+static void pair_prepare(ty_pile* pile, pair* p, int slot)
 {
-    p->active = 0;
-    p->pulled = false;
-    if (is_still(pile, p->a) && is_still(pile, p->b))
-        return 0; // the impulses stay for when one of them wakes
-    float limit = farthest(pile, p);
-    if (p->gap > limit && !p->loaded)
-        return p->bridged;
-    int near = 0;
+    bool touching = false;
+    const float limit = farthest(pile, p);
+    p->slot = slot;
+    if (p->gap > limit && !p->loaded && !p->bridged)
+        return;
+    contact* c = &pile->contacts[slot];
     for (int i = p->first; i < p->first + p->count; i++)
     {
         touch* t = &pile->near.touches[i];
-        if (t->gap <= limit)
-            near++;
-        else
-            touch_unload(t);
-    }
-    p->active = (uint16_t)near;
-    p->loaded = near > 0;
-    return near + (pile->cohesive && (near > 0 || p->bridged));
-}
-
-static void block_look(void* context, int block, int begin, int end)
-{
-    ty_pile* pile = context;
-    int count = 0;
-    for (int i = begin; i < end; i++)
-        count += pair_look(pile, &pile->near.pairs[i]);
-    pile->slots[block] = count;
-}
-
-// Places for the contacts, one after the other in the order in which they are worked off.
-static void contacts_lay(ty_pile* pile, ty_workers* workers)
-{
-    list_reserve((void**)&pile->slots, &pile->slot_capacity, pile->blocks.count, sizeof(int));
-    pair_blocks_each(&pile->blocks, workers, block_look, pile);
-    int slot = 0;
-    for (int i = 0; i < pile->blocks.count; i++)
-    {
-        int count = pile->slots[i];
-        pile->slots[i] = slot;
-        slot += count;
-    }
-    list_reserve((void**)&pile->contacts, &pile->contact_capacity, slot + 1, sizeof(contact)); // never none at all
-}
-
-// The contacts of a pair from p->slot on.
-static void pair_prepare(ty_pile* pile, pair* p)
-{
-    bool touching = false;
-    float limit = farthest(pile, p);
-    contact* c = &pile->contacts[p->slot];
-    for (int i = p->first; i < p->first + p->count && p->active > 0; i++)
-    {
-        touch* t = &pile->near.touches[i];
-        if (t->gap > limit)
-            continue;
-        if (!pile_contact_place(pile, p, t, PILE_TIGHT, c))
+        if (t->gap > limit || !pile_contact_place(pile, p, t, PILE_TIGHT, c))
         {
             touch_unload(t);
             continue;
@@ -163,7 +116,8 @@ static void pair_prepare(ty_pile* pile, pair* p)
         c->touch = i;
         c++;
     }
-    p->active = (uint16_t)(c - &pile->contacts[p->slot]);
+    p->active = (uint16_t)(c - &pile->contacts[slot]);
+    p->loaded = p->active > 0;
     if (pile->cohesive)
         pile_bridge_prepare(pile, p, touching);
 }
@@ -278,20 +232,31 @@ static void pair_relax(ty_pile* pile, const pair* p)
 // What a pair keeps acts before anything is solved, and its contacts are in the cache now.
 static void block_prepare(void* context, int block, int begin, int end)
 {
+    (void)block;
     ty_pile* pile = context;
-    int slot = pile->slots[block];
+    int slot = pile->near.pairs[begin].first + begin; // room for each touch, and a pull of each pair
     for (int i = begin; i < end; i++)
     {
         pair* p = &pile->near.pairs[i];
-        p->slot = slot;
-        if (p->active == 0 && !p->bridged)
-            continue;
+        p->active = 0;
+        p->pulled = false;
         if (is_still(pile, p->a) && is_still(pile, p->b))
-            continue;
-        pair_prepare(pile, p);
+            continue; // the impulses stay for when one of them wakes
+        pair_prepare(pile, p, slot);
         pair_warm_start(pile, p);
         slot += p->active + p->pulled;
     }
+}
+
+// For as many contacts as there can be. What is not used of it is never touched.
+static void contacts_reserve(ty_pile* pile)
+{
+    int needed = pile->near.touch_count + pile->near.pair_count + 1;
+    if (needed <= pile->contact_capacity)
+        return;
+    ty_free(pile->contacts);
+    pile->contact_capacity = needed + needed / 4;
+    pile->contacts = ty_grow(NULL, 0, (size_t)pile->contact_capacity, sizeof(contact));
 }
 
 static void block_solve(void* context, int block, int begin, int end)
@@ -429,7 +394,7 @@ void pile_substep(ty_pile* pile, ty_workers* workers)
     if (pile_moved(pile, workers))
         pile_detect(pile, pile->margin, workers);
     pile_each_body(pile, workers, bodies_accelerate, pile);
-    contacts_lay(pile, workers);
+    contacts_reserve(pile);
     pair_blocks_sweep(&pile->blocks, workers, block_prepare, pile);
     pair_blocks_sweep(&pile->blocks, workers, block_solve, pile);
     pile_each_body(pile, workers, bodies_advance, pile);

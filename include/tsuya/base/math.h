@@ -264,10 +264,22 @@ static inline ty_quat ty_quat_identity(void)
 {
     return (ty_quat){0, 0, 0, 1};
 }
-ty_quat ty_quat_multiply(ty_quat a, ty_quat b); // a after b
+// a after b
+static inline ty_quat ty_quat_multiply(ty_quat a, ty_quat b)
+{
+    return (ty_quat){a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+                     a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+}
+static inline ty_quat ty_quat_normalize(ty_quat q)
+{
+    float length = sqrtf(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+    if (!(length > 0.0f))
+        return ty_quat_identity();
+    float s = 1.0f / length;
+    return (ty_quat){q.x * s, q.y * s, q.z * s, q.w * s};
+}
 ty_quat ty_quat_axis_angle(ty_vec3 unit_axis, float angle);
 ty_quat ty_quat_euler(ty_vec3 xyz); // rotation about x, then y, then z (radians)
-ty_quat ty_quat_normalize(ty_quat q);
 ty_vec3 ty_quat_rotate(ty_quat q, ty_vec3 v);
 ty_quat ty_quat_from_columns(ty_vec3 x, ty_vec3 y, ty_vec3 z); // of a rotation matrix
 ty_quat ty_quat_uniform(float u1, float u2, float u3);         // uniform over rotations (Shoemake 1992)
