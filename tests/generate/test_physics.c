@@ -390,6 +390,33 @@ static void test_a_ball_hangs(void** state)
     assert_false(hangs(starch));
 }
 
+// What pulls presses contacts in by its acceleration over their stiffness, (pi rate)^2 / 8: a quarter at twice the
+// rate.
+static void test_a_pull_presses_in(void** state)
+{
+    (void)state;
+    for (int i = 1; i <= 2; i++)
+    {
+        ty_container* box = floor_make();
+        ty_pile_def def = weightless(0.5f);
+        def.rate = 2500.0f * (float)i;
+        def.bridge.adhesion = 1.0f;
+        def.container = box;
+        ty_pile* pile = ty_pile_create(&def);
+        ty_body body = ball_at(0.0f, -0.02f + RADIUS, 0.0f);
+        ty_pile_add(pile, &body, 1);
+        steps(pile, 1500);
+        float pull = ty_adhesion_force(&def.bridge, 2.0f * RADIUS, 0.0f) / (def.bridge.density * def.grains[0].volume);
+        float expected = 8.0f * pull / ty_sqr(TY_PI * def.rate),
+              found = -0.02f + RADIUS - ty_pile_bodies(pile)->position.y;
+        print_message("  %.3f um at %g substeps/s, %.3f expected\n", (double)found * 1e6, (double)def.rate,
+                      (double)expected * 1e6);
+        assert_true(fabsf(found / expected - 1.0f) < 0.02f);
+        ty_pile_destroy(pile);
+        ty_container_destroy(box);
+    }
+}
+
 // --- moving walls ---
 
 static ty_wall_motion belt(void* context, int wall, float seconds)
@@ -480,6 +507,7 @@ int main(void)
         cmocka_unit_test(test_rupture_takes_its_work),
         cmocka_unit_test(test_bridge_forms_at_contact),
         cmocka_unit_test(test_bridge_wakes),
+        cmocka_unit_test(test_a_pull_presses_in),
         cmocka_unit_test(test_a_ball_hangs),
         cmocka_unit_test(test_belt_and_lift),
         cmocka_unit_test(test_turned_box),
