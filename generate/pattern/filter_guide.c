@@ -128,20 +128,32 @@ static void region_row(ty_filter_run* run, const ty_filter_region* region, const
     }
 }
 
+ty_status ty_filter_masks_open(ty_filter_run* run, ty_error* error)
+{
+    const ty_param_list* regions = &run->recipe->regions;
+    int first = run->recipe->first_frame, last = first + run->frame_count - 1;
+    run->masks = TY_ALLOC(ty_filter_mask, regions->count);
+    for (int i = 0; i < regions->count; i++)
+    {
+        const char* path = ((const ty_filter_region*)regions->items)[i].mask;
+        ty_filter_mask* mask = &run->masks[i];
+        snprintf(mask->key, sizeof mask->key, "regions[%d].mask", i);
+        ty_status status = ty_plane_file_open(path, mask->key, first, last, &mask->file, error);
+        if (status != TY_OK)
+            return status;
+        if (mask->file.width != run->width || mask->file.height != run->height)
+            return ty_error_set(error, TY_BAD_INPUT, "%s: '%s' has %d x %d pixels; the field has %d x %d cells",
+                                mask->key, path, mask->file.width, mask->file.height, run->width, run->height);
+    }
+    return TY_OK;
+}
+
 static ty_status region_guide(ty_filter_run* run, int number, int frame, ty_error* error)
 {
     const ty_filter_region* region = (const ty_filter_region*)run->recipe->regions.items + number;
-    int first = run->recipe->first_frame, last = first + run->frame_count - 1;
-    char key[48];
-    snprintf(key, sizeof key, "regions[%d].mask", number);
-    ty_plane_file file;
     float* mask = NULL;
-    ty_status status = ty_plane_file_open(region->mask, key, first, last, &file, error);
-    if (status == TY_OK && (file.width != run->width || file.height != run->height))
-        status = ty_error_set(error, TY_BAD_INPUT, "%s: '%s' has %d x %d pixels; the field has %d x %d cells", key,
-                              region->mask, file.width, file.height, run->width, run->height);
-    if (status == TY_OK)
-        status = ty_plane_file_read_channel(&file, first + frame - 1, TY_PLANE_LUMINANCE, &mask, error);
+    ty_status status = ty_plane_file_read_channel(&run->masks[number].file, run->recipe->first_frame + frame - 1,
+                                                  TY_PLANE_LUMINANCE, &mask, error);
     for (int f = 0; f < run->field_count && status == TY_OK; f++)
     {
         status = hold_need(run->fields[f], error);

@@ -163,6 +163,8 @@ static ty_status prepare(ty_filter_run* run, ty_error* error)
         status = image_open(run, error);
     if (status == TY_OK)
         status = size_find(run, error);
+    if (status == TY_OK)
+        status = ty_filter_masks_open(run, error);
     return status == TY_OK ? fields_create(run, error) : status;
 }
 
@@ -181,6 +183,7 @@ ty_status ty_filter_make(const void* def, ty_workers* workers, const ty_frame_si
         ty_turing_destroy(run.fields[f]);
     ty_filter_picture_term(&run.picture);
     ty_free(run.alive);
+    ty_free(run.masks);
     ty_color_destroy(run.color);
     return status;
 }

@@ -18,13 +18,20 @@ typedef struct ty_filter_picture
     float* tone[TY_FILTER_FIELDS]; // 0..1; the further ones NULL where there is one field
 } ty_filter_picture;
 
+typedef struct ty_filter_mask
+{
+    ty_plane_file file;
+    char key[32]; // of messages
+} ty_filter_mask;
+
 typedef struct ty_filter_run
 {
     const ty_filter_recipe* recipe;
     ty_workers* workers;
     ty_color* color;
     ty_plane_file image;
-    bool sequence; // the image is one
+    ty_filter_mask* masks; // of the regions
+    bool sequence;         // the image is one, or a mask
     int width, height, frame_count;
     ty_filter_picture picture; // of the frame
     float* alive;              // how much the pattern lives in each cell, 0..1; NULL = everywhere
@@ -49,7 +56,9 @@ TY_CHECKED ty_status ty_filter_picture_read(const ty_filter_run* run, int frame,
                                             ty_error* error);
 void ty_filter_picture_term(ty_filter_picture* picture); // zeroed ones are allowed
 
-// filter_guide.c: what masks and the picture set in the fields for a frame; into alive as well.
+// filter_guide.c: the masks of all frames are looked at, once the field has its size.
+TY_CHECKED ty_status ty_filter_masks_open(ty_filter_run* run, ty_error* error);
+// What masks and the picture set in the fields for a frame; into alive as well.
 TY_CHECKED ty_status ty_filter_guide(ty_filter_run* run, int frame, ty_error* error);
 // Gaussian over [height][width], its rim repeated. scratch: of the same size.
 void ty_filter_blur(float* plane, float* scratch, int width, int height, float sigma);
