@@ -19,7 +19,8 @@ typedef struct how
 // Where the row's pointers stand, and what every cell of it shares.
 typedef struct row
 {
-    const stream_rows* in;
+    const float *above[2], *at[2], *below[2]; // u and v
+    float* out[2];
     const uint8_t* marks; // of the row; rows above and below lie a stride away
     size_t marks_stride;
     const float *feed, *kill; // planes; NULL without
@@ -61,9 +62,50 @@ GS_INLINE gs_lanes neighbour(const how h, gs_flags closed, const float* p, gs_la
     return h.barriers ? gs_select(closed, self, gs_load(p)) : gs_load(p);
 }
 
-GS_INLINE near_sums sum_near(const how h, const row* r, const fences* f, int plane, int x, gs_lanes self)
+// A plane's cells before those at x, at x and after, and the same of what lies above and below added up. A row is read
+// once and shifted in registers: loads that cross cache lines are what the loop would wait for.
+typedef struct window
 {
-    const float *up = r->in->above[plane] + x, *at = r->in->at[plane] + x, *down = r->in->below[plane] + x;
+    gs_lanes before, at, after;
+    gs_lanes column_before, column_at, column_after;
+} window;
+
+GS_INLINE bool slides(const how h)
+{
+    return GS_SLIDES && !h.barriers;
+}
+
+GS_INLINE gs_lanes column(const row* r, int plane, int x)
+{
+    return gs_add(gs_load(r->above[plane] + x), gs_load(r->below[plane] + x));
+}
+
+GS_INLINE window window_begin(const row* r, int plane, int x)
+{
+    return (window){.at = gs_load(r->at[plane] + x - GS_LANES),
+                    .after = gs_load(r->at[plane] + x),
+                    .column_at = column(r, plane, x - GS_LANES),
+                    .column_after = column(r, plane, x)};
+}
+
+GS_INLINE void window_move(const row* r, int plane, int x, window* w)
+{
+    w->before = w->at;
+    w->at = w->after;
+    w->after = gs_load(r->at[plane] + x + GS_LANES);
+    w->column_before = w->column_at;
+    w->column_at = w->column_after;
+    w->column_after = column(r, plane, x + GS_LANES);
+}
+
+// edges: (up + down) + (left + right); corners: (left up + left down) + (right up + right down).
+GS_INLINE near_sums sum_near(const how h, const row* r, const fences* f, const window* w, int plane, int x,
+                             gs_lanes self)
+{
+    const float *up = r->above[plane] + x, *at = r->at[plane] + x, *down = r->below[plane] + x;
+    if (slides(h))
+        return (near_sums){gs_add(w->column_at, gs_add(gs_before(w->before, w->at), gs_after(w->at, w->after))),
+                           gs_add(gs_before(w->column_before, w->column_at), gs_after(w->column_at, w->column_after))};
     near_sums s;
     s.edges = gs_add(gs_add(neighbour(h, f->up, up, self), neighbour(h, f->down, down, self)),
                      gs_add(neighbour(h, f->left, at - 1, self), neighbour(h, f->right, at + 1, self)));
@@ -126,14 +168,20 @@ GS_INLINE cell_rates rates_find(const how h, const row* r, const constants* c, i
 }
 
 // u' = ((keep_u u + near) + feed) - u v^2, v' = (keep_v v + near) + u v^2: the order is the same everywhere.
-GS_INLINE void cells_step(const how h, const row* r, const constants* c, int x, float* out_u, float* out_v)
+GS_INLINE void cells_step(const how h, const row* r, const constants* c, window windows[2], int x, float* out_u,
+                          float* out_v)
 {
-    gs_lanes u = gs_load(r->in->at[0] + x), v = gs_load(r->in->at[1] + x);
+    if (slides(h))
+    {
+        window_move(r, 0, x, &windows[0]);
+        window_move(r, 1, x, &windows[1]);
+    }
+    gs_lanes u = gs_load(r->at[0] + x), v = gs_load(r->at[1] + x);
     fences f = {0};
     if (h.barriers)
         f = fences_find(h, r, x);
     cell_rates rate = rates_find(h, r, c, x);
-    near_sums su = sum_near(h, r, &f, 0, x, u), sv = sum_near(h, r, &f, 1, x, v);
+    near_sums su = sum_near(h, r, &f, &windows[0], 0, x, u), sv = sum_near(h, r, &f, &windows[1], 1, x, v);
     gs_lanes near_u = gs_mul(c->edge_u, su.edges), near_v = gs_mul(c->edge_v, sv.edges);
     if (h.nine)
     {
@@ -156,16 +204,23 @@ GS_INLINE void cells_step(const how h, const row* r, const constants* c, int x, 
 
 GS_INLINE void run_step(const how h, const row* r, int begin, int end)
 {
-    const constants c = constants_make(r);
-    float* restrict out_u = r->in->out[0], * restrict out_v = r->in->out[1];
+    const row own = *r; // in registers: what is stored might be the row itself for all that the compiler knows
+    const constants c = constants_make(&own);
+    float* restrict out_u = own.out[0], * restrict out_v = own.out[1];
+    window windows[2] = {0};
+    if (slides(h))
+    {
+        windows[0] = window_begin(&own, 0, begin);
+        windows[1] = window_begin(&own, 1, begin);
+    }
     int x = begin;
     for (; x + GS_LANES <= end; x += GS_LANES)
-        cells_step(h, r, &c, x, out_u + x, out_v + x);
+        cells_step(h, &own, &c, windows, x, out_u + x, out_v + x);
     if (x < end)
     {
         float u[GS_LANES], v[GS_LANES];
         size_t size = (size_t)(end - x) * sizeof(float);
-        cells_step(h, r, &c, x, u, v);
+        cells_step(h, &own, &c, windows, x, u, v);
         memcpy(out_u + x, u, size);
         memcpy(out_v + x, v, size);
     }
@@ -209,7 +264,10 @@ void GS_KERNEL(const void* context, const stream_rows* rows, int y, int begin, i
     const ty_gray_scott* field = context;
     size_t at = gs_cell(field, y);
     row r = {
-        .in = rows,
+        .above = {rows->above[0], rows->above[1]},
+        .at = {rows->at[0], rows->at[1]},
+        .below = {rows->below[0], rows->below[1]},
+        .out = {rows->out[0], rows->out[1]},
         .marks = field->marks + gs_cell(field, y + 1),
         .marks_stride = field->stride,
         .feed = field->feed ? field->feed + at : NULL,

@@ -10,7 +10,8 @@
 
 enum
 {
-    GS_LANES = 16
+    GS_LANES = 16,
+    GS_SLIDES = true // shifting registers beats loads across cache lines
 };
 typedef __m512 gs_lanes;
 typedef __mmask16 gs_flags; // a cell's barrier
@@ -40,6 +41,15 @@ static inline gs_lanes gs_sub(gs_lanes a, gs_lanes b)
 static inline gs_lanes gs_mul(gs_lanes a, gs_lanes b)
 {
     return _mm512_mul_ps(a, b);
+}
+// The lanes a cell to the left of a's, and to the right: `before` and `after` lie beside it.
+static inline gs_lanes gs_before(gs_lanes before, gs_lanes a)
+{
+    return _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(a), _mm512_castps_si512(before), 15));
+}
+static inline gs_lanes gs_after(gs_lanes a, gs_lanes after)
+{
+    return _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(after), _mm512_castps_si512(a), 1));
 }
 static inline gs_index gs_index_load(const uint8_t* marks)
 {
@@ -76,7 +86,8 @@ static inline gs_lanes gs_select(gs_flags flag, gs_lanes a, gs_lanes b)
 
 enum
 {
-    GS_LANES = 8
+    GS_LANES = 8,
+    GS_SLIDES = false // two shuffles a shift
 };
 typedef __m256 gs_lanes;
 typedef __m256 gs_flags; // the sign bit
@@ -109,6 +120,17 @@ static inline gs_lanes gs_sub(gs_lanes a, gs_lanes b)
 static inline gs_lanes gs_mul(gs_lanes a, gs_lanes b)
 {
     return _mm256_mul_ps(a, b);
+}
+// The lanes a cell to the left of a's, and to the right: `before` and `after` lie beside it.
+static inline gs_lanes gs_before(gs_lanes before, gs_lanes a)
+{
+    __m256 middle = _mm256_permute2f128_ps(before, a, 0x21);
+    return _mm256_castsi256_ps(_mm256_alignr_epi8(_mm256_castps_si256(a), _mm256_castps_si256(middle), 12));
+}
+static inline gs_lanes gs_after(gs_lanes a, gs_lanes after)
+{
+    __m256 middle = _mm256_permute2f128_ps(a, after, 0x21);
+    return _mm256_castsi256_ps(_mm256_alignr_epi8(_mm256_castps_si256(middle), _mm256_castps_si256(a), 4));
 }
 static inline gs_index gs_index_load(const uint8_t* marks)
 {
@@ -144,7 +166,8 @@ static inline gs_lanes gs_select(gs_flags flag, gs_lanes a, gs_lanes b)
 
 enum
 {
-    GS_LANES = 1
+    GS_LANES = 1,
+    GS_SLIDES = false
 };
 typedef float gs_lanes;
 typedef bool gs_flags;
@@ -174,6 +197,17 @@ static inline gs_lanes gs_sub(gs_lanes a, gs_lanes b)
 static inline gs_lanes gs_mul(gs_lanes a, gs_lanes b)
 {
     return a * b;
+}
+// The lanes a cell to the left of a's, and to the right: `before` and `after` lie beside it.
+static inline gs_lanes gs_before(gs_lanes before, gs_lanes a)
+{
+    (void)a;
+    return before;
+}
+static inline gs_lanes gs_after(gs_lanes a, gs_lanes after)
+{
+    (void)a;
+    return after;
 }
 static inline gs_index gs_index_load(const uint8_t* marks)
 {
