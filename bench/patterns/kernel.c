@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gray–Scott against the straightforward program: bench_patterns_kernel [SECONDS a figure]. Five rates in tiles of 64 cells
-// and walls of barriers, on fields of 512, 1024 and 2048 squared; billions of cell steps a second. One thread:
+// Gray–Scott against the straightforward program: bench_patterns_kernel [SECONDS a figure]. Five rates in tiles of 64
+// cells and walls of barriers, on fields of 512, 1024 and 2048 squared; billions of cell steps a second. One thread:
 // processor time; two: time on the clock, in turn with one; the best of what fits in the seconds, interleaved, since
 // the machine is never ours alone. At the end 240 frames of 60 steps at 1920 x 1080, the steps alone.
 #include "../cpu_time.h"
