@@ -118,6 +118,35 @@ static void measure(plain_field* f, ty_turing* field, const ty_turing_def* def)
     printf("float, streamed: %6.3f Gcell/s a core, %.1f Gflop/s; ratio %.1f\n", rate, FLOPS * rate, median(ratio));
 }
 
+// What masks and limits cost: the same field with more of them.
+static void measure_kinds(const ty_turing_def* given)
+{
+    static const char* const names[] = {"fixed masks", "free masks", "directions", "limit of both"};
+    static const ty_turing_plane planes[] = {TY_TURING_HOLD, TY_TURING_OPEN, TY_TURING_ALONG_COS};
+    for (int k = 0; k < 4; k++)
+    {
+        ty_error error;
+        ty_turing* field;
+        ty_turing_def def = *given;
+        def.limit = k == 3 ? TY_TURING_LIMIT_BOTH : TY_TURING_LIMIT_NONE;
+        if (ty_turing_create(&def, &field, &error) != TY_OK ||
+            (k < 3 && ty_turing_need(field, planes[k], &error) != TY_OK))
+        {
+            ty_log_error(&error);
+            return;
+        }
+        double rate[ROUNDS];
+        for (int r = 0; r < ROUNDS; r++)
+        {
+            double t = cpu_seconds();
+            ty_turing_step(field, OUR_STEPS / 4, NULL);
+            rate[r] = (double)def.width * (double)def.height * (OUR_STEPS / 4) / (cpu_seconds() - t) * 1e-9;
+        }
+        printf("  %-14s %6.3f Gcell/s a core\n", names[k], median(rate));
+        ty_turing_destroy(field);
+    }
+}
+
 static void measure_full(ty_turing* field, int width, int height, ty_workers* workers)
 {
     int steps = (int)(2000.0f / ty_turing_time_step(field) + 0.5f);
@@ -151,6 +180,7 @@ int main(int argc, char** argv)
     start(&f, field);
     printf("%d x %d cells, constant by cell\n", def.width, def.height);
     measure(&f, field, &def);
+    measure_kinds(&def);
     measure_full(field, def.width, def.height, workers);
     ty_workers_destroy(workers);
     ty_turing_destroy(field);
