@@ -5,6 +5,11 @@
 #include <string.h>
 #include <tsuya/base/memory.h>
 
+enum
+{
+    GAP = 5 // cells
+};
+
 #define RANGE_HIGH 0.4f // of v, where the recipe says nothing: then iso .5 is v = .2
 
 typedef struct reaction
@@ -126,6 +131,12 @@ static ty_status stopped(ty_error* error)
     return ty_error_set(error, TY_INTERRUPTED, "interrupted while the reaction ran");
 }
 
+static bool is_gap(const ty_loop_reaction* def, int x, int y)
+{
+    ty_rng rng = ty_rng_make(def->seed, 0x67617073, (uint64_t)(y / GAP) << 32 | (uint64_t)(x / GAP));
+    return ty_rng_float(&rng) < def->gaps;
+}
+
 // Both ways from the logo in the middle.
 static ty_status run_logo(reaction* r, ty_error* error)
 {
@@ -135,7 +146,7 @@ static ty_status run_logo(reaction* r, ty_error* error)
         {
             size_t at = (size_t)y * (size_t)r->width + (size_t)x;
             uint8_t label = r->logo.labels[at];
-            if (label == TY_LOOP_BACKGROUND)
+            if (label == TY_LOOP_BACKGROUND || is_gap(&r->part->reaction, x, y))
                 continue;
             ty_gray_scott_u(r->field, y)[x] = 0.5f;
             ty_gray_scott_v(r->field, y)[x] = 0.25f;

@@ -79,6 +79,9 @@ static const ty_param reaction_rows[] = {
     FIELD("logo", TY_PARAM_PATH, "", 0, 0, logo,
           "an image: the slice in the middle is this, and it spreads both ways from there. What is transparent, or of "
           "the colour along its rim, is the background"),
+    FIELD("gaps", TY_PARAM_FLOAT, "", 0, 0.95, gaps,
+          "share of the logo that the reaction does not start from, in squares of 5 cells: else wide areas die out and "
+          "leave their outline"),
     FIELD("cells", TY_PARAM_INT2, "", 0, 2048, cells, "width and height; 0 = as the logo, without one 256"),
     FIELD("depth", TY_PARAM_INT, "slices", 1, 2048, depth, "odd with a logo, so that it lies in the middle exactly"),
     FIELD("start", TY_PARAM_INT, "steps", 0, 1e7, start, "before the first slice, without a logo"),
@@ -89,7 +92,7 @@ static const ty_param reaction_rows[] = {
     FIELD("diffusion_v", TY_PARAM_FLOAT, "", 1e-3, 2, diffusion_v, "Dv; half of Du in all known tables"),
     FIELD("time_step", TY_PARAM_FLOAT, "", 1e-3, 10, time_step, "below 2 / (8 Du + .2)"),
     GROUP("drops", &drops_table, drops, "where it starts without a logo"),
-    FIELD("seed", TY_PARAM_SEED, "", 0, 0, seed, "where the drops fall"),
+    FIELD("seed", TY_PARAM_SEED, "", 0, 0, seed, "where drops fall and gaps are"),
 };
 TABLE(reaction_table, "loop.reaction", "Slices of one Gray-Scott pattern in time, which wraps both ways.",
       reaction_rows);

@@ -117,6 +117,7 @@ static void the_logo_is_there_at_frame_1(void** state)
         ty_loop_part part = logo_part(path, counts[i % 3]);
         part.mix = i < 3 ? TY_LOOP_MIX_LARGEST : TY_LOOP_MIX_BLEND;
         part.twist = i % 2 ? 2.0f : 0.0f; // about the logo
+        part.reaction.gaps = i < 3 ? 0.0f : 0.7f;
         ty_loop_recipe recipe = recipe_of(&part, 1);
         recipe.motion.easing = 0.5f;
         kept k;

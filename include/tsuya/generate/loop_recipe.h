@@ -28,6 +28,7 @@ typedef struct ty_loop_reaction
     float feed, kill, diffusion_u, diffusion_v, time_step;
     ty_pattern_drops drops; // without a logo
     const char* logo;       // NULL = none
+    float gaps;             // share of the logo, in squares of 5 cells, that the reaction does not start from, 0..0.95
     ty_seed seed;
 } ty_loop_reaction;
 
