@@ -511,7 +511,18 @@ static void a_stop_changes_no_bit(void** state)
     assert_int_equal(rest.frames.count, 2);
     for (int i = 1; i <= 4; i++)
         assert_equal_images(&whole.images[i], i <= 2 ? &first.frames.images[i] : &rest.frames.images[i]);
-    // In the middle of a frame, whenever the stop comes.
+    // In the middle of a frame: from an earlier end, and before the first step.
+    ty_filter_recipe early = recipe;
+    early.time = 50.0f;
+    early.frames = 1;
+    forget(&first.frames);
+    first = (stopping){0};
+    assert_int_equal(make_from(&early, &first, NULL, &error), TY_OK);
+    forget(&rest.frames);
+    rest = (stopping){0};
+    assert_int_equal(make_from(&recipe, &rest, in_folder("state.exr"), &error), TY_OK);
+    assert_int_equal(rest.frames.count, 4);
+    assert_equal_images(&whole.images[1], &rest.frames.images[1]);
     ty_cancel_request(0);
     forget(&first.frames);
     first = (stopping){0};
