@@ -3,8 +3,6 @@
 #include "pile_state.h"
 #include <string.h>
 
-#define REACH_SHARE 0.08f // of a body's radius, mean distance that a pile is looked ahead
-
 // --- candidates ---
 
 // What one piece of the bodies finds, in id order; pieces are joined in order, whoever found them.
@@ -96,13 +94,18 @@ static float segments_distance_sqr(ty_vec3 p, ty_vec3 d, ty_vec3 q, ty_vec3 e)
     return ty_length_sqr(ty_sub(ty_mad(r, d, s), ty_mul(e, t)));
 }
 
+// Of the hull about the line between the first and the last ball.
+static float capsule_radius(const ty_pile* pile, int body)
+{
+    const ty_body* b = &pile->bodies[body];
+    return pile->def.grains[b->grain].capsule * b->scale * pile->growth * pile_bent_reach(pile, body);
+}
+
 static bool capsules_meet(const ty_pile* pile, int a, int b, float margin)
 {
     const ty_ball *p = pile_balls(pile, a), *q = pile_balls(pile, b);
     const int last_p = pile_ball_count(pile, a) - 1, last_q = pile_ball_count(pile, b) - 1;
-    float reach = pile->def.grains[pile->bodies[a].grain].capsule * pile->bodies[a].scale * pile_bent_reach(pile, a);
-    reach += pile->def.grains[pile->bodies[b].grain].capsule * pile->bodies[b].scale * pile_bent_reach(pile, b);
-    reach = reach * pile->growth + margin;
+    float reach = capsule_radius(pile, a) + capsule_radius(pile, b) + margin;
     return segments_distance_sqr(p[0].center, ty_sub(p[last_p].center, p[0].center), q[0].center,
                                  ty_sub(q[last_q].center, q[0].center)) < reach * reach;
 }
@@ -112,14 +115,15 @@ static void touches_find(const ty_pile* pile, found* f, int a, int b, float marg
     const ty_ball *p = pile_balls(pile, a), *q = pile_balls(pile, b);
     if (!capsules_meet(pile, a, b, margin))
         return;
-    const ty_body* other = &pile->bodies[b];
-    float radius = pile->def.grains[other->grain].radius * other->scale * pile->growth;
-    radius = radius * pile_bent_reach(pile, b) + margin;
-    const int of_a = pile_ball_count(pile, a);
-    const int of_b = pile_ball_count(pile, b);
+    const int of_a = pile_ball_count(pile, a), of_b = pile_ball_count(pile, b);
+    const ty_vec3 axis = ty_sub(q[of_b - 1].center, q[0].center);
+    const float along = 1.0f / ty_max(ty_length_sqr(axis), 1e-20f);
+    const float radius = 1.001f * capsule_radius(pile, b) + margin;
     for (int i = 0; i < of_a; i++)
     {
-        if (ty_length_sqr(ty_sub(p[i].center, other->position)) > ty_sqr(radius + p[i].radius))
+        ty_vec3 d = ty_sub(p[i].center, q[0].center);
+        float t = ty_clamp(ty_dot(d, axis) * along, 0.0f, 1.0f);
+        if (ty_length_sqr(ty_mad(d, axis, -t)) > ty_sqr(radius + p[i].radius))
             continue;
         for (int k = 0; k < of_b; k++)
         {
@@ -318,42 +322,6 @@ static void candidates_find(ty_pile* pile, ty_workers* workers)
     body_grid_destroy(&s.grid);
 }
 
-// m/s, of a point of the body at most.
-static float body_speed(const ty_pile* pile, int i)
-{
-    const motion* m = &pile->motions[i];
-    return ty_length(m->v) + ty_length(m->w) * pile->def.grains[pile->bodies[i].grain].radius;
-}
-
-// Seconds that a body's speed is looked ahead: twelve substeps each way, or fewer when the whole pile is fast, for
-// candidates grow with the cube of the reach. Single fast bodies reach far and keep the others from being searched.
-static float look_ahead(const ty_pile* pile)
-{
-    const float longest = 24.0f / pile->def.rate;
-    float speeds = 0.0f, radii = 0.0f;
-    for (int i = 0; i < pile->count; i++)
-    {
-        speeds += body_speed(pile, i);
-        radii += pile->def.grains[pile->bodies[i].grain].radius * pile->bodies[i].scale;
-    }
-    return speeds * longest > REACH_SHARE * radii ? REACH_SHARE * radii / speeds : longest;
-}
-
-void pile_detect(ty_pile* pile, float margin, ty_workers* workers)
-{
-    const float ahead = look_ahead(pile);
-    for (int i = 0; i < pile->count; i++)
-    {
-        float radius = pile->def.grains[pile->bodies[i].grain].radius;
-        pile->poses[i].reach = ty_min(ty_max(margin, ahead * body_speed(pile, i)), margin + radius);
-        pile->poses[i].seen = pile->bodies[i].position;
-        pile->poses[i].seen_rotation = pile->bodies[i].rotation;
-        pile->poses[i].moved = 0.0f;
-    }
-    pile_walls_see(pile);
-    pile_detect_again(pile, workers);
-}
-
 void pile_detect_again(ty_pile* pile, ty_workers* workers)
 {
     candidates former = pile->former;
@@ -362,45 +330,4 @@ void pile_detect_again(ty_pile* pile, ty_workers* workers)
     candidates_find(pile, workers);
     pile->stale = false;
     pile->resized = 0.0f;
-}
-
-typedef struct look
-{
-    ty_pile* pile;
-    bool* far; // of each piece: one of its bodies moved too far
-} look;
-
-// Each of two balls may come nearer by .45 of the margin. An angle is at most 2.1 times the distance of its
-// quaternions.
-static void moved_range(void* context, int64_t begin, int64_t end, int worker)
-{
-    (void)worker;
-    const look* l = context;
-    const ty_pile* pile = l->pile;
-    bool far = false;
-    for (int i = (int)begin; i < (int)end; i++)
-    {
-        const ty_body* b = &pile->bodies[i];
-        pose* at = &pile->poses[i];
-        ty_quat p = b->rotation, q = at->seen_rotation;
-        float turn = ty_sqr(p.x - q.x) + ty_sqr(p.y - q.y) + ty_sqr(p.z - q.z) + ty_sqr(p.w - q.w);
-        float lever = 2.1f * pile->def.grains[b->grain].radius * b->scale * pile->growth * pile_bent_reach(pile, i);
-        at->moved = ty_length(ty_sub(b->position, at->seen)) + lever * sqrtf(turn);
-        far |= at->moved > 0.45f * at->reach;
-    }
-    l->far[begin / PILE_PIECE] = far;
-}
-
-bool pile_moved(ty_pile* pile, ty_workers* workers)
-{
-    if (pile->stale || pile_walls_moved(pile))
-        return true;
-    int pieces = pile->count / PILE_PIECE + 1;
-    look l = {pile, TY_ALLOC(bool, pieces)};
-    pile_each_body(pile, workers, moved_range, &l);
-    bool far = false;
-    for (int k = 0; k < pieces; k++)
-        far |= l.far[k];
-    ty_free(l.far);
-    return far;
 }

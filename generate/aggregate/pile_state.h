@@ -85,8 +85,9 @@ typedef struct pose
     ty_affine frame; // body to world, with the size
     ty_vec3 seen;    // position and rotation when candidates were last found
     ty_quat seen_rotation;
-    float reach; // m, candidates lie within the mean of two bodies' reaches; faster bodies reach farther
-    float moved; // m, a ball of it at most since candidates were found
+    float reach;  // m, candidates lie within the mean of two bodies' reaches; faster bodies reach farther
+    float moved;  // m, a ball of it at most since candidates were found
+    float travel; // m, a ball of it at most in this substep, as fast as it begins it
 } pose;
 
 // How a body differs from its element as made.
@@ -165,6 +166,13 @@ static inline float pile_bent_reach(const ty_pile* pile, int body)
     return pile->bends ? pile->bends[body].most : 1.0f;
 }
 
+// m, about its centre.
+static inline float pile_radius(const ty_pile* pile, int body)
+{
+    const ty_body* b = &pile->bodies[body];
+    return pile->def.grains[b->grain].radius * b->scale * pile->growth * pile_bent_reach(pile, body);
+}
+
 static inline int pile_ball_count(const ty_pile* pile, int body)
 {
     return pile->ball_first[body + 1] - pile->ball_first[body];
@@ -187,18 +195,24 @@ bool pile_walls_moved(const ty_pile* pile);                           // too far
 ty_vec3 pile_in_wall(const ty_pile* pile, int wall, ty_vec3 p);       // world to the container's own frame
 ty_vec3 pile_wall_velocity(const ty_pile* pile, int wall, ty_vec3 p); // m/s
 
-// contact.c
-// Candidates within margin, in id order, with kept impulses, in blocks. Equal bits for any worker count.
+// detect.c
+// Candidates within margin, in blocks, with kept impulses. Equal bits for any worker count.
 void pile_detect(ty_pile* pile, float margin, ty_workers* workers);
-// The same lists again from bodies that stand where they were then, with the reaches that are noted.
-void pile_detect_again(ty_pile* pile, ty_workers* workers);
-// A ball may have moved more than .45 of its body's reach. Notes how far each body's have.
+// A ball may have moved more than .45 of its body's reach. Notes how far those of each have.
 bool pile_moved(ty_pile* pile, ty_workers* workers);
+
+// contact.c: the same lists again from bodies that stand where they were then, with the reaches that are noted
+void pile_detect_again(ty_pile* pile, ty_workers* workers);
 
 // settle.c
 void pile_substep(ty_pile* pile, ty_workers* workers);
 void pile_body_wake(ty_pile* pile, int body);
 void pile_body_sleep(motion* m);
+
+// impulse.c
+void pile_contacts_prepare(ty_pile* pile, ty_workers* workers); // those of the substep, with the kept impulses' kick
+void pile_contacts_solve(ty_pile* pile, ty_workers* workers);
+void pile_contacts_relax(ty_pile* pile, ty_workers* workers);
 // Gap, normal and arms of a touch; false when its gap is above limit.
 bool pile_contact_place(const ty_pile* pile, const pair* p, const touch* t, float limit, contact* c);
 
