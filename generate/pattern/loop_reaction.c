@@ -3,11 +3,13 @@
 #include "loop_volume.h"
 #include <stdio.h>
 #include <string.h>
+#include <tsuya/base/log.h>
 #include <tsuya/base/memory.h>
 
 enum
 {
-    GAP = 5 // cells
+    GAP = 5,    // cells
+    CHUNK = 256 // steps between looks at the cancel flag
 };
 
 #define RANGE_HIGH 0.4f // of v, where the recipe says nothing: then iso .5 is v = .2
@@ -23,6 +25,7 @@ typedef struct reaction
     ty_loop_volume* volume;
     float low, scale; // of v to 0..1
     int slices[2];    // that the present state is written to
+    ty_progress progress;
 } reaction;
 
 static size_t plane(const reaction* r)
@@ -32,8 +35,8 @@ static size_t plane(const reaction* r)
 
 static bool advance(reaction* r, int steps)
 {
-    if (!r->front)
-        ty_gray_scott_step(r->field, steps, r->workers);
+    for (int done = 0; !r->front && done < steps && !ty_cancel_requested(); done += CHUNK)
+        ty_gray_scott_step(r->field, steps - done < CHUNK ? steps - done : CHUNK, r->workers);
     for (int i = 0; r->front && i < steps; i++)
     {
         if (!ty_loop_colors_step(r->field, &r->part->reaction, (const int[2]){r->width, r->height}, r->color_count,
@@ -155,8 +158,11 @@ static ty_status run_logo(reaction* r, ty_error* error)
         }
     logo_put(r, middle);
     for (int n = 1; n <= middle; n++)
+    {
         if (!advance(r, r->part->reaction.every) || !slices_put(r, middle - n, middle + n))
             return stopped(error);
+        ty_progress_update(&r->progress, (double)n / middle, NULL);
+    }
     return TY_OK;
 }
 
@@ -171,9 +177,13 @@ static ty_status run_drops(reaction* r, ty_error* error)
         float up = ty_lerp(def->drops.area[0], def->drops.area[1], ty_rng_float(&place));
         ty_gray_scott_drop(r->field, x, (1.0f - up) * (float)(r->height - 1), def->drops.radius, &rng);
     }
+    double steps = (double)def->start + (double)def->every * (r->volume->size[2] - 1);
     for (int z = 0; z < r->volume->size[2]; z++)
+    {
         if (!advance(r, z == 0 ? def->start : def->every) || !slices_put(r, z, z))
             return stopped(error);
+        ty_progress_update(&r->progress, steps > 0.0 ? (def->start + (double)def->every * z) / steps : 1.0, NULL);
+    }
     return TY_OK;
 }
 
@@ -235,7 +245,11 @@ ty_status ty_loop_reaction_make(const ty_loop_part* part, int index, ty_workers*
     if (status == TY_OK)
         status = field_make(&r, error);
     if (status == TY_OK)
+    {
+        ty_progress_begin(&r.progress, "reaction");
         status = def->logo ? run_logo(&r, error) : run_drops(&r, error);
+        ty_progress_end(&r.progress);
+    }
     out->wrap[0] = out->wrap[1] = true;
     if (status != TY_OK)
         ty_loop_volume_term(out);

@@ -247,6 +247,30 @@ static void colors_stay_and_change_no_shape(void** state)
         ty_loop_volume_term(&volumes[i]);
 }
 
+static void gaps_let_wide_areas_live(void** state)
+{
+    (void)state;
+    ty_free(logo_write(in_folder("logo.png"), 1));
+    ty_loop_part whole = logo_part(in_folder("logo.png"), 0), part = whole;
+    whole.reaction.feed = part.reaction.feed = 0.025f;
+    whole.reaction.kill = part.reaction.kill = 0.0525f;
+    whole.reaction.every = part.reaction.every = 200;
+    part.reaction.gaps = 0.6f;
+    ty_loop_recipe recipes[] = {recipe_of(&whole, 1), recipe_of(&part, 1)};
+    int inside[2] = {0, 0};
+    for (int i = 0; i < 2; i++)
+    {
+        ty_loop_volume v;
+        assert_int_equal(ty_loop_volume_make(&recipes[i], NULL, &v, NULL), TY_OK);
+        for (int y = 12; y < 24; y++) // amid the bars
+            for (int x = 16; x < 32; x++)
+                inside[i] += v.values[ty_loop_voxel(&v, x, y, 15)] > TY_LOOP_ONE / 2;
+        ty_loop_volume_term(&v);
+    }
+    print_message("inside amid the logo after 600 steps: %d of 192 cells, with gaps %d\n", inside[0], inside[1]);
+    assert_true(inside[1] > inside[0] + 10);
+}
+
 // --- builders ---
 
 static float* ramp_write(const char* path, int size)
@@ -515,6 +539,7 @@ int main(void)
         cmocka_unit_test(seventeen_colors_become_sixteen),
         cmocka_unit_test(colors_add_up_to_v),
         cmocka_unit_test(colors_stay_and_change_no_shape),
+        cmocka_unit_test(gaps_let_wide_areas_live),
         cmocka_unit_test(builders_turn_mirror_and_unite),
         cmocka_unit_test(raw_files_and_stacks_are_read),
         cmocka_unit_test(frames_of_a_fill_are_slices),
