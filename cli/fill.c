@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // `tsuya fill`: the frames of a living pattern, with pictures and the state beside them.
 #include "cli.h"
+#include "fill_pages.h"
 #include <stdio.h>
 #include <string.h>
 #include <tsuya/base/file.h>
 #include <tsuya/base/log.h>
 
 static const char *const frame_endings[] = {"exr", "png", NULL}, *const picture_endings[] = {"png", NULL};
-static const char* const state_endings[] = {"exr", NULL};
+static const char *const state_endings[] = {"exr", NULL}, *const page_endings[] = {"html", NULL};
 
 static ty_status check_pattern(const ty_command* command, const char* pattern, const char* const* endings)
 {
@@ -39,11 +40,25 @@ ty_status ty_output_check_state(const ty_command* command, const char* path)
     return status;
 }
 
+static ty_status check_page(const ty_command* command, const char* path, const char* const* endings)
+{
+    ty_error error;
+    ty_status status = ty_output_check_ending(command, path, endings);
+    if (status != TY_OK)
+        return status;
+    status = ty_output_probe(path, &error);
+    if (status != TY_OK)
+        ty_log_error(&error);
+    return status;
+}
+
 static ty_status check_outputs(const ty_arguments* arguments)
 {
     const char* output = ty_argument_text(arguments, "output", NULL);
     const char* png = ty_argument_text(arguments, "png", NULL);
     const char* state = ty_argument_text(arguments, "state", NULL);
+    const char* sheet = ty_argument_text(arguments, "sheet", NULL);
+    const char* page = ty_argument_text(arguments, "page", NULL);
     if (!output)
         return ty_usage(arguments->command, "where to? give -o %s", arguments->command->options[0].value);
     ty_status status = check_pattern(arguments->command, output, frame_endings);
@@ -51,6 +66,33 @@ static ty_status check_outputs(const ty_arguments* arguments)
         status = check_pattern(arguments->command, png, picture_endings);
     if (status == TY_OK && state)
         status = ty_output_check_state(arguments->command, state);
+    if (status == TY_OK && sheet)
+        status = check_page(arguments->command, sheet, picture_endings);
+    if (status == TY_OK && page)
+        status = check_page(arguments->command, page, page_endings);
+    if (status == TY_OK && page && strcmp(ty_path_extension(output), "exr") != 0)
+        status = ty_usage(arguments->command, "--page reads what the frames tell: they must end in .exr");
+    return status;
+}
+
+// What is made of the frames once they are there.
+static ty_status write_pages(const ty_arguments* arguments, const char* output)
+{
+    ty_error error;
+    long every = 0;
+    const char* sheet = ty_argument_text(arguments, "sheet", NULL);
+    const char* page = ty_argument_text(arguments, "page", NULL);
+    ty_status status = TY_OK;
+    if (ty_argument_has(arguments, "every"))
+        status = ty_argument_int(arguments, "every", 1, 1000000, &every);
+    if (status != TY_OK)
+        return status;
+    if (sheet)
+        status = ty_contact_sheet_write(sheet, output, (int)every, &error);
+    if (status == TY_OK && page)
+        status = ty_map_page_write(page, output, &error);
+    if (status != TY_OK)
+        ty_log_error(&error);
     return status;
 }
 
@@ -74,6 +116,8 @@ static ty_status run(const ty_arguments* arguments)
     status = ty_recipe_make(arguments->positional[0], "fill", output, 0, options, &errors);
     ty_errors_log(&errors);
     ty_scene_arguments_term(&scene_arguments);
+    if (status == TY_OK)
+        status = write_pages(arguments, output);
     if (status != TY_OK)
         return status;
     ty_log(TY_LOG_INFO, "made in %.1f s", ty_time_now() - start);
@@ -87,6 +131,9 @@ static const ty_option options[] = {
     {"also", 0, "NAMES", "more channels, as the recipe's `outputs`: u,v,mark,trail,distance,mattes"},
     {"state", 0, "FILE.exr", "where a run keeps its state, at its end or when it is interrupted"},
     {"resume", 0, "FILE.exr", "go on after the frame whose state that is: the same frames as without a stop"},
+    {"sheet", 0, "FILE.png", "a contact sheet of the frames"},
+    {"every", 0, "N", "with --sheet: of every N-th frame (default: 24 of them at most)"},
+    {"page", 0, "FILE.html", "of a recipe with `map`: a page on which rates are picked with a click"},
     TY_SCENE_OPTIONS,
 };
 

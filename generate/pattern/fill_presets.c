@@ -11,16 +11,16 @@ static const ty_fill_preset presets[] = {
     {"dying", 0.052f, 0.079f, "nothing lasts: its place stays empty"},
     {"spots", 0.0265f, 0.0605f, "spots that divide until they are everywhere"},
     {"mitosis", 0.0367f, 0.0649f, "cells that divide and stay apart"},
-    {"worms", 0.050f, 0.063f, "short worms that grow at their ends"},
+    {"worms", 0.058f, 0.0645f, "worms that grow at their ends and keep apart"},
     {"coral", 0.0545f, 0.062f, "branches that grow outwards"},
     {"maze", 0.029f, 0.057f, "a dense maze"},
     {"holes", 0.039f, 0.058f, "a plain with holes"},
-    {"bubbles", 0.098f, 0.057f, "small round holes in a plain"},
-    {"chaos", 0.026f, 0.051f, "never comes to rest"},
+    {"pulses", 0.020f, 0.056f, "spots that flare up, divide and vanish"},
+    {"chaos", 0.025f, 0.0525f, "holes that come and go, never at rest"},
     {"restless", 0.025f, 0.055f, "a labyrinth that keeps on moving"},
     {"solitons", 0.030f, 0.062f, "spots that move apart and stay"},
     {"moving", 0.014f, 0.054f, "spots that wander"},
-    {"waves", 0.014f, 0.045f, "waves and spirals"},
+    {"waves", 0.018f, 0.050f, "waves that roll on and break up"},
 };
 
 static const ty_fill_convention conventions[] = {

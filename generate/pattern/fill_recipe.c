@@ -62,6 +62,27 @@ static const ty_param_table loop_table = {
     loop_rows,
     TY_PARAM_COUNT(loop_rows)};
 
+// --- a map ---
+
+static void map_set_default(void* def)
+{
+    *(ty_fill_map*)def = ty_fill_recipe_default().map;
+}
+
+#define OWNER ty_fill_map
+static const ty_param map_rows[] = {
+    FIELD("feed", TY_PARAM_FLOAT2, "", 0, 0.2, feed, "F at the bottom and at the top; [0, 0]: no map"),
+    FIELD("kill", TY_PARAM_FLOAT2, "", 0, 0.2, kill, "k at the left and at the right"),
+};
+#undef OWNER
+
+static const ty_param_table map_table = {"fill.map",
+                                         "A field whose rates go from edge to edge: what pattern is where.",
+                                         sizeof(ty_fill_map),
+                                         map_set_default,
+                                         map_rows,
+                                         TY_PARAM_COUNT(map_rows)};
+
 // --- the recipe ---
 
 static const char* const tiles[] = {"both", "around", "none", NULL};
@@ -87,6 +108,7 @@ static const ty_param recipe_rows[] = {
     CHOICE("preset", fill_preset_names, preset, "rates by name, where there is no table of marks"),
     FIELD("feed", TY_PARAM_FLOAT, "", 0, 0.2, feed, "F in place of the preset's"),
     FIELD("kill", TY_PARAM_FLOAT, "", 0, 0.2, kill, "k in place of the preset's"),
+    GROUP("map", &map_table, map, "rates that go from edge to edge instead"),
     FIELD("variation", TY_PARAM_FLOAT, "", 0, 0.5, variation, "how much feed differs from place to place, relative"),
     FIELD("variation_size", TY_PARAM_FLOAT, "cells", 8, 8192, variation_size, "from one place to another"),
     LIST("marks", &fill_mark_table, marks, "rates and looks by mark, at most 16; all cells begin with the first"),

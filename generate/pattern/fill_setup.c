@@ -133,6 +133,11 @@ static ty_status recipe_check(const fill_run* run, ty_error* error)
     if (!(r->tone[1] > r->tone[0]))
         return ty_error_set(error, TY_BAD_INPUT, "tone: [%g, %g]; the second lies above the first", (double)r->tone[0],
                             (double)r->tone[1]);
+    if (r->map.feed[1] > 0.0f && !(r->map.feed[1] > r->map.feed[0] && r->map.kill[1] > r->map.kill[0]))
+        return ty_error_set(error, TY_BAD_INPUT, "map: feed and kill go from lower to higher numbers");
+    if (r->map.feed[1] > 0.0f && r->marks.count > 1)
+        return ty_error_set(error, TY_BAD_INPUT, "map: it takes the place of the table of marks, which has %d rows",
+                            r->marks.count);
     if (r->stencil != 0 && r->stencil != 5 && r->stencil != 9)
         return ty_error_set(error, TY_BAD_INPUT, "stencil: %d; it has 5 or 9 points, or 0 for the convention's",
                             r->stencil);
@@ -213,8 +218,26 @@ static float cell_noise(ty_seed seed, size_t cell)
     return ty_rng_range(&rng, -1.0f, 1.0f);
 }
 
+// Of the map at the middle of a cell, beyond those of the first mark.
+static ty_status map_vary(const fill_run* run, ty_error* error)
+{
+    const ty_fill_map* map = &run->recipe->map;
+    float *feed = run->cover, *kill = run->near_x;
+    for (int y = 0; y < run->height; y++)
+        for (int x = 0; x < run->width; x++)
+        {
+            size_t at = fill_cell(run, x, y);
+            float up = 1.0f - ((float)y + 0.5f) / (float)run->height, right = ((float)x + 0.5f) / (float)run->width;
+            feed[at] = ty_lerp(map->feed[0], map->feed[1], up) - run->rates[0].feed;
+            kill[at] = ty_lerp(map->kill[0], map->kill[1], right) - run->rates[0].kill;
+        }
+    return ty_gray_scott_vary(run->field, feed, kill, error);
+}
+
 ty_status fill_vary(const fill_run* run, ty_error* error)
 {
+    if (run->recipe->map.feed[1] > 0.0f)
+        return map_vary(run, error);
     if (!run->varies)
         return TY_OK;
     float* feed = run->cover; // nobody covers anything now

@@ -38,6 +38,27 @@ static bool all_opaque(const fill_run* run)
     return opaque || run->over.path;
 }
 
+// For pages on which rates are picked: {"feed": [..], "kill": [..], "presets": [[name, feed, kill, help], ..]}.
+static void map_tell(const fill_run* run, ty_exr* image)
+{
+    const ty_fill_map* map = &run->recipe->map;
+    int count;
+    const ty_fill_preset* presets = ty_fill_presets(&count);
+    char* text = ty_string_format("{\"feed\": [%g, %g], \"kill\": [%g, %g], \"presets\": [", (double)map->feed[0],
+                                  (double)map->feed[1], (double)map->kill[0], (double)map->kill[1]);
+    for (int i = 0; i < count; i++)
+    {
+        char* more = ty_string_format("%s%s[\"%s\", %g, %g, \"%s\"]", text, i > 0 ? ", " : "", presets[i].name,
+                                      (double)presets[i].feed, (double)presets[i].kill, presets[i].help);
+        ty_free(text);
+        text = more;
+    }
+    char* whole = ty_string_format("%s]}", text);
+    ty_exr_add_string(image, "tsuya/map", whole);
+    ty_free(text);
+    ty_free(whole);
+}
+
 static void channels_add(fill_show_state* show, ty_exr* image)
 {
     static const char* const names[] = {"R", "G", "B"};
@@ -245,6 +266,8 @@ ty_status fill_show(const fill_run* run, int frame, float drift, ty_exr** out, t
     float* made[2] = {NULL, NULL};
     ty_exr* image = ty_exr_create(window, window);
     channels_add(&show, image);
+    if (run->recipe->map.feed[1] > 0.0f)
+        map_tell(run, image);
     ty_status status = planes_fill(&show, made, error);
     if (status == TY_OK)
         status = images_read(&show, error);

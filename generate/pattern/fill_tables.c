@@ -4,7 +4,7 @@
 #include "plane_file.h"
 
 const char* const fill_preset_names[] = {"stripes",  "plain",    "slow",   "dying", "spots",   "mitosis",
-                                         "worms",    "coral",    "maze",   "holes", "bubbles", "chaos",
+                                         "worms",    "coral",    "maze",   "holes", "pulses", "chaos",
                                          "restless", "solitons", "moving", "waves", NULL};
 const char* const fill_convention_names[] = {"pearson", "munafo", "sims", "processing", NULL};
 const char* const fill_op_names[] = {"mark", "unmark", "hole", "fill", "seed", "barrier", "unbarrier", NULL};

@@ -95,9 +95,77 @@ expect 4 "$tsuya" fill heal.yaml -o 'out.##.exr' --resume whole.01.exr
 says "is not one of a fill"
 
 # Interrupted: what it leaves goes on.
-expect 130 timeout --preserve-status -s INT 1 "$tsuya" fill heal.yaml -o 'stop.####.exr' --set run.frames=4000 --state stop.state.exr
+"$tsuya" fill heal.yaml -o 'stop.####.exr' --set run.frames=9000 --state stop.state.exr >out.txt 2>err.txt &
+child=$!
+for _ in $(seq 600); do [ -e stop.0005.exr ] && break; sleep 0.1; done
+kill -INT $child
+wait $child
+[ $? -eq 130 ] || fail "an interrupted run ends with 130"
+says "interrupted"
 ls stop.*.exr >list.txt
 grep -q stop.state.exr list.txt || fail "no state is left"
 last=$(grep -v state list.txt | tail -1 | cut -d. -f2)
 expect 0 "$tsuya" fill heal.yaml -o 'on.####.exr' --set run.frames=$((10#$last + 1)) --resume stop.state.exr
 [ "$(ls on.*.exr | wc -l)" -eq 1 ] || fail "one frame is left to make"
+
+# A contact sheet, and a page on which rates are picked.
+expect 0 "$tsuya" fill heal.yaml -o 'sheet.##.exr' --sheet sheet.png --every 2
+expect 0 "$tsuya" info sheet.png
+prints "height: 136" # three of 128 x 96 with gaps of 8 and a caption of 24
+expect 2 "$tsuya" fill heal.yaml -o 'sheet.##.exr' --sheet sheet.exr
+expect 2 "$tsuya" fill heal.yaml -o 'sheet.##.exr' --sheet sheet.png --every 0
+expect 2 "$tsuya" fill heal.yaml -o 'sheet.##.png' --page page.html
+says "they must end in .exr"
+expect 3 "$tsuya" fill heal.yaml -o 'sheet.##.exr' --page page.html
+says "the recipe has none"
+absent page.html
+cat >map.yaml <<'Y'
+tsuya: 1
+kind: fill
+cells: [200, 120]
+scale: 1
+tile: none
+map: { feed: [0.01, 0.1], kill: [0.03, 0.07] }
+drops: { count: 80, radius: 5 }
+run: { frames: 1, before: 1500 }
+Y
+refuse "map" "from lower to higher" map.yaml -o 'out.##.exr' --set map.kill='[0.07,0.03]'
+expect 0 "$tsuya" fill map.yaml -o 'map.#.exr' --page page.html
+grep -Eq '(src|href)="[^d]|url\(|https?:' page.html && grep -Ev 'w3.org/2000/svg' page.html | grep -Eq '(src|href)="[^d]|url\(|https?:' && fail "the page points outside"
+PYTHONPATH=$TSUYA_SOURCE/tests/cli python3 - <<'P'
+import os, re, sys
+import browser
+if not browser.available():
+    sys.exit(77)
+chromium = browser.Browser(1300, 900)
+try:
+    chromium.open(os.path.abspath("page.html"))
+    chromium.wait("document.querySelectorAll('#map circle').length > 10")
+    failed = []
+    def check(good, text):
+        if not good:
+            failed.append(text)
+    def rates():
+        return [float(x) for x in re.findall(r"[\d.]+", chromium.text("#yaml"))]
+    check(rates() == [0.067, 0.062], "begins with the first preset")
+    chromium.pointer("#map", [(0.25, 0.75)])
+    feed, kill = rates()
+    check(abs(feed - 0.0325) < 3e-4 and abs(kill - 0.04) < 3e-4, f"a click gives {feed}, {kill}")
+    check(re.fullmatch(r"feed: 0\.\d{4}\nkill: 0\.\d{4}\n", chromium.text("#yaml")), "these are lines of a recipe")
+    chromium.script("document.getElementById('map').focus()")
+    chromium.press("\ue014")
+    check(rates()[0] == feed and rates()[1] > kill, "the arrow goes to the right")
+    chromium.script("document.querySelectorAll('#presets button')[4].click()")
+    check(rates() == [0.0265, 0.0605], "a preset by its name")
+    check(not chromium.console_errors(), "the console is quiet")
+    check(all(a.startswith(("file:", "data:")) for a in chromium.requests()), "nothing is asked of the network")
+    print("\n".join(failed))
+finally:
+    chromium.close()
+sys.exit(1 if failed else 0)
+P
+case $? in
+0) ;;
+77) skip "no chromium: the page is not clicked" ;;
+*) fail "the page of the map" ;;
+esac

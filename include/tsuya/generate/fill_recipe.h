@@ -160,6 +160,12 @@ typedef struct ty_fill_run
     int first;   // number that masks and images of sequences have at frame 1
 } ty_fill_run;
 
+// Feed from the lowest row to the highest and kill from the left to the right, for a picture of all patterns.
+typedef struct ty_fill_map
+{
+    float feed[2], kill[2]; // feed[1] 0 = no map
+} ty_fill_map;
+
 typedef enum ty_pattern_start
 {
     TY_PATTERN_START_DROPS,
@@ -176,7 +182,8 @@ typedef struct ty_fill_recipe
     float diffusion_u, diffusion_v, time_step; // 0 = the convention's
     int stencil;                               // 0 = the convention's, else 5 or 9
     int preset;
-    float feed, kill;     // of all cells without a table of marks; 0 = the preset's
+    float feed, kill; // of all cells without a table of marks; 0 = the preset's
+    ty_fill_map map;
     float variation;      // of feed, relative, 0..0.5
     float variation_size; // cells
     ty_param_list marks;  // ty_fill_mark, at most TY_GRAY_SCOTT_MARKS
