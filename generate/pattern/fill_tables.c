@@ -3,7 +3,7 @@
 #include "fill_tables.h"
 #include "plane_file.h"
 
-const char* const fill_preset_names[] = {"stripes",  "plain",    "slow",   "dying", "spots",   "mitosis",
+const char* const fill_preset_names[] = {"stripes",  "plain",    "slow",   "dying", "spots",  "mitosis",
                                          "worms",    "coral",    "maze",   "holes", "pulses", "chaos",
                                          "restless", "solitons", "moving", "waves", NULL};
 const char* const fill_convention_names[] = {"pearson", "munafo", "sims", "processing", NULL};
