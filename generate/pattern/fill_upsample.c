@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From cells to pixels: a cubic through both axes, across edges that wrap.
+#include "cubic.h"
 #include "fill_show.h"
 #include <string.h>
 #include <tsuya/base/memory.h>
@@ -11,22 +12,6 @@ typedef struct upsampling
     float* pixels;
 } upsampling;
 
-// The cubic through the four neighbours (Catmull & Rom 1974) at t past the second.
-static void cubic_weights(float t, float w[4])
-{
-    w[0] = 0.5f * t * (t * (2.0f - t) - 1.0f);
-    w[1] = 0.5f * (t * t * (3.0f * t - 5.0f) + 2.0f);
-    w[2] = 0.5f * t * (t * (4.0f - 3.0f * t) + 1.0f);
-    w[3] = 0.5f * t * t * (t - 1.0f);
-}
-
-static int wrap_or_clamp(int i, int n, bool wrap)
-{
-    if (wrap)
-        return (i % n + n) % n;
-    return i < 0 ? 0 : i >= n ? n - 1 : i;
-}
-
 // The line of cells through the middle of row y of the frame.
 static void line_blend(const upsampling* u, int y, float* line)
 {
@@ -36,7 +21,7 @@ static void line_blend(const upsampling* u, int y, float* line)
     memset(line, 0, (size_t)run->width * sizeof *line);
     for (int k = 0; k < 4; k++)
     {
-        const float* row = u->cells + fill_cell(run, 0, wrap_or_clamp((int)whole - 1 + k, run->height, run->wrap_y));
+        const float* row = u->cells + fill_cell(run, 0, cubic_neighbour((int)whole - 1 + k, run->height, run->wrap_y));
         for (int x = 0; x < run->width; x++)
             line[x] += weight[k] * row[x];
     }
@@ -57,7 +42,7 @@ static void rows_upsample(void* context, int64_t begin, int64_t end, int worker)
             float weight[4], value = 0.0f;
             cubic_weights(at - whole, weight);
             for (int k = 0; k < 4; k++)
-                value += weight[k] * line[wrap_or_clamp((int)whole - 1 + k, run->width, run->wrap_x)];
+                value += weight[k] * line[cubic_neighbour((int)whole - 1 + k, run->width, run->wrap_x)];
             u->pixels[(size_t)y * (size_t)u->show->width + (size_t)x] = value;
         }
     }
@@ -74,6 +59,6 @@ void fill_pixel_cell(const fill_show_state* show, int x, int y, int* cell_x, int
 {
     const fill_run* run = show->run;
     int i = (int)floorf(((float)x + 0.5f) / (float)run->recipe->scale + show->drift);
-    *cell_x = wrap_or_clamp(i, run->width, run->wrap_x);
+    *cell_x = cubic_neighbour(i, run->width, run->wrap_x);
     *cell_y = y / run->recipe->scale;
 }

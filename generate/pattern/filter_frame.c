@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a frame of a Turing filter shows: U against a threshold, calibrated by the tones that the cells were to have.
+#include "cubic.h"
 #include "filter_run.h"
 #include <math.h>
 #include <stdlib.h>
@@ -158,31 +159,16 @@ typedef struct painting
     float* pixels;                       // three a pixel: linear Rec. 709, or of grey alone ACEScg
 } painting;
 
-// The cubic through the four neighbours (Catmull & Rom 1974) at t past the second.
-static void cubic_weights(float t, float w[4])
-{
-    w[0] = 0.5f * t * (t * (2.0f - t) - 1.0f);
-    w[1] = 0.5f * (t * t * (3.0f * t - 5.0f) + 2.0f);
-    w[2] = 0.5f * t * (t * (4.0f - 3.0f * t) + 1.0f);
-    w[3] = 0.5f * t * t * (t - 1.0f);
-}
-
-static int neighbour(const ty_filter_run* run, int i, int n)
-{
-    if (run->recipe->edges == TY_TURING_WRAP)
-        return (i + n) % n;
-    return i < 0 ? 0 : i >= n ? n - 1 : i;
-}
-
 // The field's line through the middle of row y of the frame.
 static void line_blend(const ty_filter_run* run, const float* plane, int y, float* line)
 {
     float at = ((float)y + 0.5f) / (float)run->recipe->scale - 0.5f, whole = floorf(at), weight[4];
+    bool wraps = run->recipe->edges == TY_TURING_WRAP;
     cubic_weights(at - whole, weight);
     memset(line, 0, (size_t)run->width * sizeof *line);
     for (int k = 0; k < 4; k++)
     {
-        const float* row = plane + (size_t)neighbour(run, (int)whole - 1 + k, run->height) * (size_t)run->width;
+        const float* row = plane + (size_t)cubic_neighbour((int)whole - 1 + k, run->height, wraps) * (size_t)run->width;
         for (int x = 0; x < run->width; x++)
             line[x] += weight[k] * row[x];
     }
@@ -195,7 +181,7 @@ static float line_level(const ty_filter_run* run, const float* line, int x)
     float at = ((float)x + 0.5f) / (float)r->scale - 0.5f, whole = floorf(at), weight[4], over = 0.0f;
     cubic_weights(at - whole, weight);
     for (int k = 0; k < 4; k++)
-        over += weight[k] * line[neighbour(run, (int)whole - 1 + k, run->width)];
+        over += weight[k] * line[cubic_neighbour((int)whole - 1 + k, run->width, r->edges == TY_TURING_WRAP)];
     return level_of(r, over * (float)r->scale);
 }
 
