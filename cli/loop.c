@@ -31,6 +31,8 @@ static void report_print(const json_t* report)
            (int)json_integer_value(json_array_get(size, 2)));
     if (number(report, "colors") > 0.0)
         printf(", %d colours", (int)number(report, "colors"));
+    if (number(report, "outside") > 0.0)
+        printf("\noutside  %.1f %% of the pixels lie beside the volume", 100.0 * number(report, "outside"));
     printf("\ninside   %.2f %% of the pixels (%.2f..%.2f)\n", 100.0 * number(mean, "density"),
            100.0 * number(report, "density_least"), 100.0 * number(report, "density_most"));
     printf("change   %.2f %% of the pixels a frame, at most %.2f %%; at the seam %.2f %%\n",

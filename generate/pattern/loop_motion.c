@@ -252,10 +252,10 @@ static ty_status orbit_check(const ty_loop_recipe* recipe, const ty_loop_volume*
     return TY_OK;
 }
 
-// Whether any of the frame's pixels lies in the volume, by a lattice of them with the corners.
-static bool meets(const ty_loop_recipe* recipe, const ty_loop_volume* volume, int i)
+double ty_loop_motion_outside(const ty_loop_recipe* recipe, const ty_loop_volume* volume, int i)
 {
     const ty_loop_grid grid = ty_loop_motion_grid(recipe, volume->size, i, recipe->frames);
+    int outside = 0;
     for (int y = 0; y < LOOKS; y++)
         for (int x = 0; x < LOOKS; x++)
         {
@@ -265,10 +265,9 @@ static bool meets(const ty_loop_recipe* recipe, const ty_loop_volume* volume, in
             bool inside = true;
             for (int k = 0; k < 3; k++)
                 inside &= volume->wrap[k] || (at[k] >= -0.5f && at[k] <= (float)volume->size[k] - 0.5f);
-            if (inside)
-                return true;
+            outside += !inside;
         }
-    return false;
+    return (double)outside / (LOOKS * LOOKS);
 }
 
 ty_status ty_loop_motion_check(const ty_loop_recipe* recipe, const ty_loop_volume* volume, ty_error* error)
@@ -282,7 +281,7 @@ ty_status ty_loop_motion_check(const ty_loop_recipe* recipe, const ty_loop_volum
         status = orbit_check(recipe, volume, error);
     double half = 0.5 * volume->size[0];
     for (int i = 0; i < recipe->frames && status == TY_OK; i++)
-        if (!meets(recipe, volume, i))
+        if (ty_loop_motion_outside(recipe, volume, i) == 1.0)
             status = ty_error_set(error, TY_BAD_INPUT,
                                   "plane: at frame %d it lies outside the volume, which reaches to x %g, y %g, z %g "
                                   "both ways",

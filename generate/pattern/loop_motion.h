@@ -13,5 +13,8 @@ TY_CHECKED ty_status ty_loop_motion_check(const ty_loop_recipe* recipe, const ty
 // The rectangle of moment i of n, in the voxels of a volume. The same bits for i and i + n.
 ty_loop_grid ty_loop_motion_grid(const ty_loop_recipe* recipe, const int size[3], int64_t i, int64_t n);
 
+// The share of frame i that lies outside the volume, by a lattice of its pixels with the corners.
+double ty_loop_motion_outside(const ty_loop_recipe* recipe, const ty_loop_volume* volume, int i);
+
 // The farthest that any pixel moves from moment i to the next, voxels.
 double ty_loop_motion_step(const ty_loop_recipe* recipe, const int size[3], int64_t i, int64_t n);

@@ -190,6 +190,14 @@ static double longest_step(const ty_loop_report* r)
     return most;
 }
 
+static double outside_mean(const ty_loop_report* r)
+{
+    double sum = 0.0;
+    for (int i = 0; i < r->recipe->frames; i++)
+        sum += ty_loop_motion_outside(r->recipe, r->volume, i);
+    return sum / r->recipe->frames;
+}
+
 char* ty_loop_report_end(ty_loop_report* report)
 {
     const ty_loop_recipe* recipe = report->recipe;
@@ -207,6 +215,7 @@ char* ty_loop_report_end(ty_loop_report* report)
     add(&t, "{\"frames\": %d, \"volume\": [%d, %d, %d], ", recipe->frames, size[0], size[1], size[2]);
     add(&t, "\"colors\": %d, \"wavelength\": %.3f, \"step_most\": %.4f, \"frames_needed\": %d, ",
         report->volume->palette.count, wave, step, needed > 0 ? needed : recipe->frames);
+    add(&t, "\"outside\": %.6f, ", outside_mean(report));
     summary_add(&t, report);
     add(&t, "\"steps\": [");
     for (int i = 0; i < recipe->frames; i++)

@@ -226,6 +226,22 @@ static void steps_are_as_long_as_they_are_said_to_be(void** state)
     assert_true(ty_loop_motion_step(&recipe, size, 7, 180) == 0.0);
 }
 
+static void what_lies_beside_the_volume_is_told(void** state)
+{
+    (void)state;
+    ty_loop_volume volume = loop_waves(SIDE, 14.0f, false, 1);
+    ty_loop_recipe recipe = base();
+    assert_true(ty_loop_motion_outside(&recipe, &volume, 0) == 0.0);
+    recipe.plane.center.x = 1.0f; // its right half is out
+    assert_true(fabs(ty_loop_motion_outside(&recipe, &volume, 0) - 0.5) < 0.05);
+    recipe.plane.center.x = 2.1f;
+    assert_true(ty_loop_motion_outside(&recipe, &volume, 0) == 1.0);
+    ty_loop_volume_term(&volume);
+    volume = loop_waves(SIDE, 14.0f, true, 1);
+    assert_true(ty_loop_motion_outside(&recipe, &volume, 0) == 0.0);
+    ty_loop_volume_term(&volume);
+}
+
 static void figures_of_pairs_are_cohens(void** state)
 {
     (void)state;
@@ -245,6 +261,7 @@ int main(void)
         cmocka_unit_test(centred_planes_come_back_as_mirrors),
         cmocka_unit_test(orbits_tile),
         cmocka_unit_test(steps_are_as_long_as_they_are_said_to_be),
+        cmocka_unit_test(what_lies_beside_the_volume_is_told),
         cmocka_unit_test(figures_of_pairs_are_cohens),
         cmocka_unit_test(seams_are_steps_like_others),
     };
