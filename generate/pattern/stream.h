@@ -26,12 +26,11 @@ typedef struct stream_rows
 } stream_rows;
 
 // Makes the cells [begin, end) of row y, 0..height - 1, and writes no others. begin is a multiple of STREAM_GROUP, end
-// is one or the width; pointers are not aligned. In the rows that are read, begin - 1 and end hold the neighbours
+// is one or the width; pointers need not be aligned. In the rows that are read, begin - 1 and end hold the neighbours
 // (beyond an edge that does not wrap: copies of the cells at it, as the rows above the first and below the last are
-// copies of those); from whole groups STREAM_GROUP cells more may be
-// read on either side, their values mean nothing. Cells may be made more than
-// once, on several threads: the rule depends on nothing but what it is given, the place and what does not change during
-// the pass.
+// copies of those). Of whole groups STREAM_GROUP cells more may be read on either side; their values mean nothing.
+// Cells may be made more than once, on several threads: the rule depends on nothing but what it is given, the place and
+// what does not change during the pass.
 typedef void stream_row_fn(const void* context, const stream_rows* rows, int y, int begin, int end);
 
 typedef struct stream
