@@ -80,6 +80,26 @@ static void test_central_impact(void** state)
     ty_pile_destroy(pile);
 }
 
+// What closes within a substep is a contact before it does: a slow ball stops at another one, and not within it.
+static void test_slow_impact(void** state)
+{
+    (void)state;
+    ty_pile_def def = weightless(0.5f);
+    ty_pile* pile = ty_pile_create(&def);
+    ty_body two[2] = {ball_at(0.0f, 0.0f, 0.0f), ball_at(2.1f * RADIUS, 0.0f, 0.0f)};
+    two[0].velocity.x = 0.06f;
+    ty_pile_add(pile, two, 2);
+    float least = TY_FLOAT_MAX;
+    for (int i = 0; i < 40; i++)
+    {
+        steps(pile, 1);
+        const ty_body* b = ty_pile_bodies(pile);
+        least = ty_min(least, b[1].position.x - b[0].position.x - 2.0f * RADIUS);
+    }
+    assert_true(fabsf(least) < 1e-6f);
+    ty_pile_destroy(pile);
+}
+
 // A ball hits another at 45 degrees: along the normal they part with v_n / 2 each, along the tangent the impulse is
 // mu times that of the normal while it slips, and 1/7 of the mass times v_t (2/7 of the reduced one) when it sticks.
 static void oblique(float friction, float rate)
@@ -498,6 +518,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_central_impact),
+        cmocka_unit_test(test_slow_impact),
         cmocka_unit_test(test_oblique_impact),
         cmocka_unit_test(test_rolls_and_slips),
         cmocka_unit_test(test_rolling_resistance),
