@@ -91,7 +91,7 @@ static ty_fill_mark mark_of(const char* name, int preset)
     return mark;
 }
 
-static ty_fill_mark marks[4];
+static ty_fill_mark marks[TY_GRAY_SCOTT_MARKS + 1];
 
 // A plain of N x N cells with edges, and marks for what stays empty, spots and a slow fill.
 static ty_fill_recipe plain(int frames, float steps)
