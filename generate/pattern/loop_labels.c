@@ -64,7 +64,7 @@ static int blue_order(const void* a, const void* b)
 
 // --- pixels ---
 
-// [height][width]: 0xRRGGBB, or TRANSPARENT where the image is.
+// [height][width]: 0xRRGGBB, or TRANSPARENT where the image is. As much again follows, to sort in.
 #define TRANSPARENT 0x1000000u
 
 static ty_status codes_read(const char* path, const char* key, ty_image* image, uint32_t** out, ty_error* error)
@@ -74,7 +74,7 @@ static ty_status codes_read(const char* path, const char* key, ty_image* image, 
         return status;
     int n = image->width * image->height;
     size_t channels = (size_t)image->channels;
-    *out = TY_TRY_ALLOC(uint32_t, n);
+    *out = TY_TRY_ALLOC(uint32_t, (size_t)2 * (size_t)n);
     float* rgb = TY_TRY_ALLOC(float, (size_t)3 * (size_t)n);
     if (!*out || !rgb)
         status =
@@ -125,38 +125,40 @@ static uint32_t mode_of(uint32_t* codes, int count)
 }
 
 // What is transparent, else the colour of most of the rim.
-static uint32_t background_of(const uint32_t* codes, int w, int h)
+static uint32_t background_of(uint32_t* codes, int w, int h)
 {
     int n = 0;
-    uint32_t* rim = TY_ALLOC(uint32_t, w * h);
+    uint32_t* rim = codes + (size_t)w * (size_t)h;
     for (int i = 0; i < w * h; i++)
         if (codes[i] & TRANSPARENT)
             rim[n++] = codes[i];
-    for (int i = 0; i < w * h && !(rim[0] & TRANSPARENT); i++)
+    bool clear = n > 0;
+    for (int i = 0; i < w * h && !clear; i++)
         if (i < w || i >= w * (h - 1) || i % w == 0 || i % w == w - 1)
             rim[n++] = codes[i];
-    uint32_t background = mode_of(rim, n);
-    ty_free(rim);
-    return background;
+    return mode_of(rim, n);
 }
 
 // --- colours ---
 
-// Every colour that occurs, with its number of pixels; transparent ones are left out.
-static void entries_take(quantizer* q, const uint32_t* codes, int n)
+// Every colour that occurs, with its number of pixels; transparent ones are left out. False: no memory.
+static bool entries_take(quantizer* q, uint32_t* codes, int n)
 {
-    uint32_t* sorted = TY_ALLOC(uint32_t, n);
+    uint32_t* sorted = codes + n;
+    int count = 0;
     memcpy(sorted, codes, (size_t)n * sizeof *sorted);
     qsort(sorted, (size_t)n, sizeof *sorted, code_order);
-    q->entries = TY_ALLOC(entry, n);
     for (int i = 0; i < n && !(sorted[i] & TRANSPARENT); i++)
+        count += i == 0 || sorted[i] != sorted[i - 1];
+    q->entries = TY_TRY_ALLOC(entry, count);
+    for (int i = 0; q->entries && i < n && !(sorted[i] & TRANSPARENT); i++)
     {
         if (i == 0 || sorted[i] != sorted[i - 1])
             q->entries[q->count++] =
                 (entry){{(uint8_t)(sorted[i] >> 16), (uint8_t)(sorted[i] >> 8), (uint8_t)sorted[i]}, 0};
         q->entries[q->count - 1].count++;
     }
-    ty_free(sorted);
+    return q->entries != NULL;
 }
 
 // The longest side of a box (0 red, 1 green, 2 blue) and its length.
@@ -269,14 +271,15 @@ static void means_refine(quantizer* q)
     }
 }
 
-// At most `colors` beside the background.
-static ty_loop_palette palette_of(const uint32_t* codes, int n, uint32_t background, int colors)
+// At most `colors` beside the background. False: no memory.
+static bool palette_make(uint32_t* codes, int n, uint32_t background, int colors, ty_loop_palette* out)
 {
     ty_loop_palette palette = {
         .background = {(uint8_t)(background >> 16), (uint8_t)(background >> 8), (uint8_t)background},
         .clear = background & TRANSPARENT};
     quantizer q = {0};
-    entries_take(&q, codes, n);
+    if (!entries_take(&q, codes, n))
+        return false;
     int most = colors + !palette.clear;
     if (q.count <= most)
         for (int i = 0; i < q.count; i++)
@@ -290,7 +293,8 @@ static ty_loop_palette palette_of(const uint32_t* codes, int n, uint32_t backgro
     for (int i = 0; i < q.mean_count; i++)
         memcpy(i == ground ? palette.background : palette.colors[palette.count++], q.means[i], 3);
     ty_free(q.entries);
-    return palette;
+    *out = palette;
+    return true;
 }
 
 static uint8_t label_of(const ty_loop_palette* palette, uint32_t code)
@@ -319,10 +323,11 @@ ty_status ty_loop_labels_read(const char* path, const char* key, int colors, con
     out->width = cells[0] ? cells[0] : w;
     out->height = cells[1] ? cells[1] : h;
     out->labels = TY_TRY_ALLOC(uint8_t, (size_t)out->width * (size_t)out->height);
-    if (!out->labels)
+    if (given)
+        out->palette = *given;
+    if (!out->labels ||
+        (!given && !palette_make(codes, w * h, background_of(codes, w, h), colors ? colors : 1, &out->palette)))
         status = ty_error_set(error, TY_NO_MEMORY, "%s: no memory for %d x %d cells", key, out->width, out->height);
-    if (status == TY_OK)
-        out->palette = given ? *given : palette_of(codes, w * h, background_of(codes, w, h), colors ? colors : 1);
     for (int y = 0; y < out->height && status == TY_OK; y++)
         for (int x = 0; x < out->width; x++)
         {
@@ -332,5 +337,7 @@ ty_status ty_loop_labels_read(const char* path, const char* key, int colors, con
                 label_of(&out->palette, codes[from_y * w + from_x]);
         }
     ty_free(codes);
+    if (status != TY_OK)
+        ty_loop_labels_term(out);
     return status;
 }

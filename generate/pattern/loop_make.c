@@ -28,10 +28,10 @@ static ty_status frames_make(const ty_loop_recipe* recipe, const ty_loop_volume*
                              const ty_frame_sink* sink, char** report, ty_error* error)
 {
     ty_loop_painter* painter = NULL;
-    ty_status status = ty_loop_painter_create(recipe, volume, workers, &painter, error);
-    if (status != TY_OK)
-        return status;
-    ty_loop_report* counts = ty_loop_report_create(recipe, volume);
+    ty_loop_report* counts = NULL;
+    ty_status status = ty_loop_report_create(recipe, volume, &counts, error);
+    if (status == TY_OK)
+        status = ty_loop_painter_create(recipe, volume, workers, &painter, error);
     ty_progress progress;
     ty_progress_begin(&progress, "loop");
     for (int i = 0; i < recipe->frames && status == TY_OK; i++)

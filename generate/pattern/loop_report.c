@@ -12,21 +12,28 @@ struct ty_loop_report
     const ty_loop_recipe* recipe;
     const ty_loop_volume* volume;
     size_t pixels;
-    uint8_t *first, *last; // inside
-    ty_loop_pair* pairs;   // i: from frame i to i + 1, the last back to the first
-    int count;             // frames taken
+    uint8_t *first, *last, *now; // inside
+    ty_loop_pair* pairs;         // i: from frame i to i + 1, the last back to the first
+    int count;                   // frames taken
 };
 
-ty_loop_report* ty_loop_report_create(const ty_loop_recipe* recipe, const ty_loop_volume* volume)
+ty_status ty_loop_report_create(const ty_loop_recipe* recipe, const ty_loop_volume* volume, ty_loop_report** out,
+                                ty_error* error)
 {
     ty_loop_report* r = TY_ALLOC(ty_loop_report, 1);
     r->recipe = recipe;
     r->volume = volume;
     r->pixels = (size_t)recipe->size[0] * (size_t)recipe->size[1];
-    r->first = TY_ALLOC(uint8_t, r->pixels);
-    r->last = TY_ALLOC(uint8_t, r->pixels);
-    r->pairs = TY_ALLOC(ty_loop_pair, recipe->frames);
-    return r;
+    r->first = TY_TRY_ALLOC(uint8_t, r->pixels);
+    r->last = TY_TRY_ALLOC(uint8_t, r->pixels);
+    r->now = TY_TRY_ALLOC(uint8_t, r->pixels);
+    r->pairs = TY_TRY_ALLOC(ty_loop_pair, recipe->frames);
+    *out = r;
+    if (r->first && r->last && r->now && r->pairs)
+        return TY_OK;
+    ty_loop_report_destroy(r);
+    *out = NULL;
+    return ty_error_set(error, TY_NO_MEMORY, "no memory for the figures of %d frames", recipe->frames);
 }
 
 void ty_loop_report_destroy(ty_loop_report* report)
@@ -35,6 +42,7 @@ void ty_loop_report_destroy(ty_loop_report* report)
         return;
     ty_free(report->first);
     ty_free(report->last);
+    ty_free(report->now);
     ty_free(report->pairs);
     ty_free(report);
 }
@@ -66,13 +74,13 @@ static ty_loop_pair compare(const uint8_t* first, const uint8_t* second, size_t 
 
 void ty_loop_report_add(ty_loop_report* report, const float* coverage)
 {
-    uint8_t* inside = report->count == 0 ? report->first : TY_ALLOC(uint8_t, report->pixels);
+    uint8_t* inside = report->count == 0 ? report->first : report->now;
     for (size_t i = 0; i < report->pixels; i++)
         inside[i] = coverage[i] >= 0.5f;
     if (report->count > 0)
     {
         report->pairs[report->count - 1] = compare(report->last, inside, report->pixels);
-        ty_free(report->last);
+        report->now = report->last;
         report->last = inside;
     }
     else

@@ -5,8 +5,9 @@
 
 typedef struct ty_loop_report ty_loop_report; // opaque
 
-// The recipe and volume are borrowed.
-ty_loop_report* ty_loop_report_create(const ty_loop_recipe* recipe, const ty_loop_volume* volume);
+// The recipe and volume are borrowed. On failure *out is NULL.
+TY_CHECKED ty_status ty_loop_report_create(const ty_loop_recipe* recipe, const ty_loop_volume* volume,
+                                           ty_loop_report** out, ty_error* error);
 void ty_loop_report_destroy(ty_loop_report* report); // NULL is allowed
 
 // Frames in order, as shares of pixels that are inside: [height][width].

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Looping textures from their recipes: the logo comes back as it was, colours stay with what carries them, sources and
 // builders give what they say, mistakes are refused with their place.
+#include "base/alloc_sweep.h"
 #include "base/own_folder.h"
 #include "loop_frames.h"
 #include <tsuya/base/hash.h>
@@ -531,6 +532,35 @@ static void mistakes_are_refused(void** state)
     must_refuse(&wrong, "motion.kind: an orbit needs a volume that wraps in x and y");
 }
 
+static ty_status make_once(void* context)
+{
+    kept k;
+    ty_hash hash;
+    ty_error error;
+    ty_status status = make(context, 0, NULL, &k, &hash, &error);
+    assert_true(status == TY_OK || k.count == 0);
+    return status;
+}
+
+static void memory_that_is_not_there_is_a_status(void** state)
+{
+    (void)state;
+    ty_free(logo_write(in_folder("logo.png"), 30));
+    ty_loop_part parts[2] = {logo_part(in_folder("logo.png"), 4), logo_part(in_folder("logo.png"), 4)};
+    for (int i = 0; i < 2; i++)
+    {
+        parts[i].mix = TY_LOOP_MIX_BLEND;
+        parts[i].reaction.depth = 3;
+        parts[i].reaction.every = 1;
+    }
+    parts[0].twist = 1.0f;
+    ty_loop_recipe recipe = recipe_of(parts, 2);
+    recipe.frames = 2;
+    int failed = ty_alloc_sweep(make_once, &recipe);
+    print_message("allocations that failed in turn: %d\n", failed);
+    assert_true(failed > 12);
+}
+
 int main(void)
 {
     ty_log_set_level(TY_LOG_ERROR);
@@ -545,6 +575,7 @@ int main(void)
         cmocka_unit_test(frames_of_a_fill_are_slices),
         cmocka_unit_test(beside_the_axis_more_changes),
         cmocka_unit_test(threads_change_no_bit),
+        cmocka_unit_test(memory_that_is_not_there_is_a_status),
         cmocka_unit_test(mistakes_are_refused),
     };
     return cmocka_run_group_tests(tests, folder_setup, folder_teardown);
