@@ -108,6 +108,28 @@ last=$(grep -v state list.txt | tail -1 | cut -d. -f2)
 expect 0 "$tsuya" fill heal.yaml -o 'on.####.exr' --set run.frames=$((10#$last + 1)) --resume stop.state.exr
 [ "$(ls on.*.exr | wc -l)" -eq 1 ] || fail "one frame is left to make"
 
+# Over footage: what is closed or not opaque shows it, by frame; images go through the mattes.
+cat >over.yaml <<'Y'
+tsuya: 1
+kind: fill
+cells: [64, 48]
+scale: 2
+tile: none
+start: plain
+marks: [{ preset: plain, image: whole.01.png, ground_opacity: 0 }]
+over: whole.##.png
+run: { frames: 3, steps: 0 }
+events: [{ at: 1, op: hole, shape: rectangle, center: [30, 24], size: [40, 30] }, { at: 3, op: hole, shape: all }]
+Y
+expect 0 "$tsuya" fill over.yaml -o 'over.##.png'
+expect 0 "$tsuya" compare over.01.png whole.01.png --fail 'max>0.005'
+expect 1 "$tsuya" compare over.02.png whole.01.png --fail 'max>0.1' # the hole of frame 2 is seen through ours
+expect 0 "$tsuya" compare over.03.png whole.03.png --fail 'max>0.005'
+sed 's/{ at: 1, op: hole.*/{ at: 1, op: barrier, shape: all }]/' over.yaml >closed.yaml
+expect 0 "$tsuya" fill closed.yaml -o 'closed.##.png'
+expect 0 "$tsuya" compare closed.03.png whole.03.png --fail 'max>0.005'
+expect 1 "$tsuya" compare closed.03.png whole.01.png --fail 'max>0.1'
+
 # A contact sheet, and a page on which rates are picked.
 expect 0 "$tsuya" fill heal.yaml -o 'sheet.##.exr' --sheet sheet.png --every 2
 expect 0 "$tsuya" info sheet.png
