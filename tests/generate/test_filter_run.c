@@ -44,6 +44,15 @@ static void sequences_go_in_and_out(void** state)
         int same = memcmp(out.images[1].pixels, out.images[3].pixels, size);
         assert_int_equal(same == 0, mode == TY_FILTER_PLAIN);
         assert_true(memcmp(out.images[1].pixels, out.images[2].pixels, size) != 0);
+        frames alone = {0};
+        ty_filter_recipe second = small(NULL);
+        second.image = in_folder("in.0005.png");
+        second.mode = mode;
+        second.time = mode == TY_FILTER_TONE ? recipe.time + recipe.time_per_frame : recipe.time;
+        make(&second, &alone);
+        same = memcmp(alone.images[1].pixels, out.images[2].pixels, size);
+        assert_int_equal(same == 0, mode == TY_FILTER_PLAIN);
+        forget(&alone);
         forget(&out);
     }
     recipe.first_frame = 1;
