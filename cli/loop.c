@@ -178,7 +178,7 @@ const ty_command ty_command_loop = {
     "loop",
     "RECIPE -o OUT.####.exr",
     "cut the frames of a looping texture out of a volume",
-    "tsuya loop scenes/loop_logo/loop.yaml -o out/logo.gif",
+    "tsuya loop scenes/loop_logo/mark.yaml -o out/logo.gif",
     1,
     1,
     options,
