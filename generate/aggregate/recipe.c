@@ -176,26 +176,21 @@ static void recipe_set_default(void* def)
 }
 
 #define OWNER ty_aggregate_recipe
-#define GROUP(member, table, help)                                                                                     \
-    {                                                                                                                  \
-#member, TY_PARAM_GROUP, "", 0, 0, NULL, table, offsetof(OWNER, member), help, false                           \
-    }
 static const ty_param recipe_rows[] = {
-    GROUP(element, &recipe_element, "what is packed"),
+    GROUP("element", &recipe_element, element, "what is packed"),
     {"elements", TY_PARAM_LIST, "", 0, 0, NULL, &recipe_element, offsetof(OWNER, elements),
      "kinds that are mixed by ratio, at most 16, in place of element; a mesh without slots has one of its kind's name",
      false},
-    GROUP(container, &recipe_container, "what the grains lie in"),
-    GROUP(fill, &fill_table, "how many, how dense, how high"),
+    GROUP("container", &recipe_container, container, "what the grains lie in"),
+    GROUP("fill", &fill_table, fill, "how many, how dense, how high"),
     {"layers", TY_PARAM_LIST, "", 0, 0, NULL, &layer_table, offsetof(OWNER, layers),
      "what comes onto that in an open container, one after the other; with element, at most 16 kinds in all", false},
-    GROUP(settle, &recipe_settle, "how they come to rest"),
-    GROUP(press, &recipe_press, "a mould that closes on them"),
-    GROUP(moisture, &recipe_moisture, "the attribute moisture"),
-    GROUP(animate, &recipe_animate, "a film of it"),
+    GROUP("settle", &recipe_settle, settle, "how they come to rest"),
+    GROUP("press", &recipe_press, press, "a mould that closes on them"),
+    GROUP("moisture", &recipe_moisture, moisture, "the attribute moisture"),
+    GROUP("animate", &recipe_animate, animate, "a film of it"),
     FIELD("seed", TY_PARAM_SEED, "", 0, 0, seed, "one seed, one result"),
 };
-#undef GROUP
 #undef OWNER
 
 static const ty_param_table recipe_table = {"aggregate",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parameter tables of a Turing filter's recipe, their defaults and presets.
 #include <tsuya/base/file.h>
+#include <tsuya/base/param_rows.h>
 #include <tsuya/generate/filter_recipe.h>
 
 // Presets of a clamped activator and inhibitor: what makes them differ is the activator's constant.
@@ -66,27 +67,14 @@ static ty_filter_region region_default(void)
     return (ty_filter_region){.boundary = 1, .value = {5.0f, 0.0f}, .softness = 0.06f};
 }
 
-#define FIELD(name, type, unit, low, high, member, help)                                                               \
-    {                                                                                                                  \
-        name, type, unit, low, high, NULL, NULL, offsetof(OWNER, member), help, false                                  \
-    }
-#define CHOICE(name, choices, member, help)                                                                            \
-    {                                                                                                                  \
-        name, TY_PARAM_ENUM, "", 0, 0, choices, NULL, offsetof(OWNER, member), help, false                             \
-    }
-#define GROUP(name, table, member, help)                                                                               \
-    {                                                                                                                  \
-        name, TY_PARAM_GROUP, "", 0, 0, NULL, table, offsetof(OWNER, member), help, false                              \
-    }
-
 // --- reaction ---
 
-static void u_set_default(void* def)
+static void set_u_table(void* def)
 {
     *(ty_turing_reaction*)def = ty_turing_def_default().u;
 }
 
-static void v_set_default(void* def)
+static void set_v_table(void* def)
 {
     *(ty_turing_reaction*)def = ty_turing_def_default().v;
 }
@@ -100,18 +88,13 @@ static const ty_param reaction_rows[] = {
     FIELD("most", TY_PARAM_FLOAT, "", 0, 100, most, "the rate stays between 0 and this"),
     FIELD("diffusion", TY_PARAM_FLOAT, "", 1e-4, 100, diffusion, "D, cells^2 per unit of time"),
 };
+TABLE(u_table, "filter.u", "The activator, with preset custom.", reaction_rows);
+TABLE(v_table, "filter.v", "The inhibitor, with preset custom.", reaction_rows);
 #undef OWNER
-
-static const ty_param_table u_table = {
-    "filter.u",    "The activator, with preset custom.", sizeof(ty_turing_reaction), u_set_default,
-    reaction_rows, TY_PARAM_COUNT(reaction_rows)};
-static const ty_param_table v_table = {
-    "filter.v",    "The inhibitor, with preset custom.", sizeof(ty_turing_reaction), v_set_default,
-    reaction_rows, TY_PARAM_COUNT(reaction_rows)};
 
 // --- tone ---
 
-static void tone_set_default(void* def)
+static void set_tone_table(void* def)
 {
     *(ty_filter_tone*)def = ty_filter_recipe_default().tone;
 }
@@ -122,18 +105,12 @@ static const ty_param tone_rows[] = {
     FIELD("calibrated", TY_PARAM_BOOL, "", 0, 0, calibrated, "each tone's threshold gives its share of bright cells"),
     FIELD("displayed", TY_PARAM_BOOL, "", 0, 0, displayed, "tones are values as shown (sRGB), not amounts of light"),
 };
+TABLE(tone_table, "filter.tone", "How the image steers the pattern, with mode tone.", tone_rows);
 #undef OWNER
-
-static const ty_param_table tone_table = {"filter.tone",
-                                          "How the image steers the pattern, with mode tone.",
-                                          sizeof(ty_filter_tone),
-                                          tone_set_default,
-                                          tone_rows,
-                                          TY_PARAM_COUNT(tone_rows)};
 
 // --- limit ---
 
-static void limit_set_default(void* def)
+static void set_limit_table(void* def)
 {
     *(ty_filter_limit*)def = ty_filter_recipe_default().limit;
 }
@@ -146,18 +123,12 @@ static const ty_param limit_rows[] = {
     FIELD("slope", TY_PARAM_FLOAT, "", 0, 1000, slope, "s of 1 / (1 + s |grad U|)"),
     FIELD("conservative", TY_PARAM_BOOL, "", 0, 0, conservative, "div(g grad U), where nothing is lost; else g lap U"),
 };
+TABLE(limit_table, "filter.limit", "Where U is steep it spreads less, with mode limited.", limit_rows);
 #undef OWNER
-
-static const ty_param_table limit_table = {"filter.limit",
-                                           "Where U is steep it spreads less, with mode limited.",
-                                           sizeof(ty_filter_limit),
-                                           limit_set_default,
-                                           limit_rows,
-                                           TY_PARAM_COUNT(limit_rows)};
 
 // --- regions ---
 
-static void region_set_default(void* def)
+static void set_region_table(void* def)
 {
     *(ty_filter_region*)def = region_default();
 }
@@ -174,18 +145,12 @@ static const ty_param region_rows[] = {
     FIELD("softness", TY_PARAM_FLOAT, "1/time", 1e-4, 100, softness,
           "how fast half grey of a fixed mask goes to value"),
 };
+TABLE(region_table, "filter.region", "Where the pattern lives and what its rim is like.", region_rows);
 #undef OWNER
-
-static const ty_param_table region_table = {"filter.region",
-                                            "Where the pattern lives and what its rim is like.",
-                                            sizeof(ty_filter_region),
-                                            region_set_default,
-                                            region_rows,
-                                            TY_PARAM_COUNT(region_rows)};
 
 // --- contours ---
 
-static void contours_set_default(void* def)
+static void set_contours_table(void* def)
 {
     *(ty_filter_contours*)def = ty_filter_recipe_default().contours;
 }
@@ -197,18 +162,12 @@ static const ty_param contours_rows[] = {
     FIELD("width", TY_PARAM_FLOAT, "cells", 1, 50, width, "of the line"),
     FIELD("value", TY_PARAM_FLOAT2, "", -100, 100, value, "U and V on it"),
 };
+TABLE(contours_table, "filter.contours", "The image's edges as lines of fixed U and V.", contours_rows);
 #undef OWNER
-
-static const ty_param_table contours_table = {"filter.contours",
-                                              "The image's edges as lines of fixed U and V.",
-                                              sizeof(ty_filter_contours),
-                                              contours_set_default,
-                                              contours_rows,
-                                              TY_PARAM_COUNT(contours_rows)};
 
 // --- along ---
 
-static void along_set_default(void* def)
+static void set_along_table(void* def)
 {
     *(ty_filter_along*)def = ty_filter_recipe_default().along;
 }
@@ -220,14 +179,8 @@ static const ty_param along_rows[] = {
     FIELD("spread", TY_PARAM_FLOAT, "cells", 0.3, 50, spread, "over which directions are averaged"),
     FIELD("across", TY_PARAM_BOOL, "", 0, 0, across, "across the image's structure, not along it"),
 };
+TABLE(along_table, "filter.along", "Stripes follow the image's structure tensor.", along_rows);
 #undef OWNER
-
-static const ty_param_table along_table = {"filter.along",
-                                           "Stripes follow the image's structure tensor.",
-                                           sizeof(ty_filter_along),
-                                           along_set_default,
-                                           along_rows,
-                                           TY_PARAM_COUNT(along_rows)};
 
 // --- the recipe ---
 
@@ -236,7 +189,7 @@ static const char *const modes[] = {"tone", "plain", "limited", NULL},
                          *const edge_names[] = {"free", "fixed", "wrap", NULL},
                          *const color_names[] = {"grey", "tinted", "channels", NULL};
 
-static void recipe_set_default(void* def)
+static void set_recipe_table(void* def)
 {
     *(ty_filter_recipe*)def = ty_filter_recipe_default();
 }
@@ -274,15 +227,9 @@ static const ty_param recipe_rows[] = {
     FIELD("fields", TY_PARAM_BOOL, "", 0, 0, fields, "U and V as further channels of EXR files"),
     FIELD("seed", TY_PARAM_SEED, "", 0, 0, seed, "another seed, another pattern"),
 };
+TABLE(recipe_table, "filter",
+      "A picture redrawn by Turing's activator and inhibitor: spots and stripes that keep its tones.", recipe_rows);
 #undef OWNER
-
-static const ty_param_table recipe_table = {
-    "filter",
-    "A picture redrawn by Turing's activator and inhibitor: spots and stripes that keep its tones.",
-    sizeof(ty_filter_recipe),
-    recipe_set_default,
-    recipe_rows,
-    TY_PARAM_COUNT(recipe_rows)};
 
 const ty_param_table* ty_filter_recipe_params(void)
 {

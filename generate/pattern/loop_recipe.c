@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parameter tables of a looping texture's recipe and their defaults.
 #include "plane_file.h"
+#include <tsuya/base/param_rows.h>
 #include <tsuya/generate/loop_recipe.h>
 
 ty_loop_recipe ty_loop_recipe_default(void)
@@ -37,21 +38,6 @@ static ty_loop_part part_default(void)
         .raw = {.type = TY_LOOP_U8},
     };
 }
-
-#define FIELD(name, type, unit, low, high, member, help)                                                               \
-    {                                                                                                                  \
-        name, type, unit, low, high, NULL, NULL, offsetof(OWNER, member), help, false                                  \
-    }
-#define CHOICE(name, choices, member, help)                                                                            \
-    {                                                                                                                  \
-        name, TY_PARAM_ENUM, "", 0, 0, choices, NULL, offsetof(OWNER, member), help, false                             \
-    }
-#define GROUP(name, table, member, help)                                                                               \
-    {                                                                                                                  \
-        name, TY_PARAM_GROUP, "", 0, 0, NULL, table, offsetof(OWNER, member), help, false                              \
-    }
-#define TABLE(name, heading, help, rows)                                                                               \
-    static const ty_param_table name = {heading, help, sizeof(OWNER), set_##name, rows, TY_PARAM_COUNT(rows)}
 
 // --- reaction ---
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parameter tables of a root recipe and their defaults.
+#include <tsuya/base/param_rows.h>
 #include <tsuya/generate/roots_recipe.h>
 
 ty_roots_recipe ty_roots_recipe_default(void)
@@ -30,17 +31,6 @@ ty_roots_recipe ty_roots_recipe_default(void)
     recipe.host.shape.radius = 0.04f;
     return recipe;
 }
-
-#define FIELD(name, type, unit, low, high, member, help)                                                               \
-    {                                                                                                                  \
-        name, type, unit, low, high, NULL, NULL, offsetof(OWNER, member), help, false                                  \
-    }
-#define GROUP(name, table, member, help)                                                                               \
-    {                                                                                                                  \
-        name, TY_PARAM_GROUP, "", 0, 0, NULL, table, offsetof(OWNER, member), help, false                              \
-    }
-#define TABLE(name, heading, help, rows)                                                                               \
-    static const ty_param_table name = {heading, help, sizeof(OWNER), set_##name, rows, TY_PARAM_COUNT(rows)}
 
 // --- host ---
 
