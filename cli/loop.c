@@ -5,16 +5,7 @@
 #include <tsuya/base/log.h>
 #include <tsuya/base/memory.h>
 
-static const char *const film_endings[] = {"gif", "mp4", "mov", "mkv"}, *const endings[] = {"exr", "png", "gif", "mp4",
-                                                                                            "mov", "mkv", NULL};
-
-static bool is_film(const char* output)
-{
-    for (int i = 0; i < TY_PARAM_COUNT(film_endings); i++)
-        if (strcmp(ty_path_extension(output), film_endings[i]) == 0)
-            return true;
-    return false;
-}
+static const char* const endings[] = {"exr", "png", "gif", "mp4", "mov", "mkv", NULL};
 
 // --- the report ---
 
@@ -80,12 +71,12 @@ static ty_status check_output(const ty_arguments* arguments, const char* output)
     ty_status status = ty_output_check_ending(arguments->command, output, endings);
     if (status != TY_OK)
         return status;
-    if (is_film(output) == ty_path_is_sequence(output))
+    if (ty_video_is_named(output) == ty_path_is_sequence(output))
         return ty_usage(arguments->command,
-                        is_film(output) ? "the film '%s' is one file: it has no #"
-                                        : "the output '%s' needs #### where the number of a frame goes",
+                        ty_video_is_named(output) ? "the film '%s' is one file: it has no #"
+                                                  : "the output '%s' needs #### where the number of a frame goes",
                         output);
-    if (is_film(output) && !ty_video_available())
+    if (ty_video_is_named(output) && !ty_video_available())
         return ty_usage(arguments->command, "there is no ffmpeg in PATH; write frames: -o 'OUT.####.png'");
     ty_path_frame(output, 1, path);
     status = ty_output_probe(path, &error);
@@ -154,8 +145,8 @@ static ty_status run(const ty_arguments* arguments)
     if (status != TY_OK)
         return status;
     scene_arguments.options.report = &report;
-    status = is_film(output) ? make_film(arguments, output, fps, &scene_arguments)
-                             : make(arguments, output, &scene_arguments);
+    status = ty_video_is_named(output) ? make_film(arguments, output, fps, &scene_arguments)
+                                       : make(arguments, output, &scene_arguments);
     ty_scene_arguments_term(&scene_arguments);
     if (status == TY_OK)
     {

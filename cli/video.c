@@ -42,16 +42,19 @@ bool ty_video_available(void)
     return find_ffmpeg(path);
 }
 
-ty_status ty_video_probe(const char* output, ty_error* error)
+bool ty_video_is_named(const char* output)
 {
     static const char* const kinds[] = {"mp4", "mov", "mkv", "gif"};
     for (int i = 0; i < TY_PARAM_COUNT(kinds); i++)
-    {
         if (strcmp(ty_path_extension(output), kinds[i]) == 0)
-        {
-            return ty_output_probe(output, error);
-        }
-    }
+            return true;
+    return false;
+}
+
+ty_status ty_video_probe(const char* output, ty_error* error)
+{
+    if (ty_video_is_named(output))
+        return ty_output_probe(output, error);
     return ty_error_set(error, TY_USAGE, "the video '%.300s' must end in .mp4, .mov, .mkv or .gif", output);
 }
 

@@ -5,7 +5,9 @@
 
 // Whether there is an ffmpeg in PATH.
 bool ty_video_available(void);
-// Checks the name: .mp4, .mov, .mkv or .gif, in a folder that can be written.
+// Whether the name ends as that of a video: .mp4, .mov, .mkv or .gif.
+bool ty_video_is_named(const char* output);
+// Checks the name, and that it is in a folder that can be written.
 TY_CHECKED ty_status ty_video_probe(const char* output, ty_error* error);
 // The pictures of pattern at the list's frames, in order, `fps` a second: H.264, yuv420p, BT.709; or a GIF that plays
 // for ever. The file is complete or absent. TY_INTERRUPTED or TY_TERMINATED on a cancel request.

@@ -2,6 +2,7 @@
 // A world: Embree's device, and the top level over its objects.
 #include "trace_world.h"
 #include <string.h>
+#include <tsuya/base/cpu.h>
 #include <tsuya/base/memory.h>
 
 // Up to this many plain objects at rest, the largest, are left to Embree: a bowl about a heap would be in every ray's
@@ -48,10 +49,7 @@ ty_status ty_trace_take_error(ty_world* world, const char* doing, ty_error* erro
 static const char* best_isa(void)
 {
 #if defined(__x86_64__)
-    bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                  __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512bw") &&
-                  __builtin_cpu_supports("avx512vl");
-    return avx512                             ? "avx512"
+    return ty_cpu_has_avx512()                ? "avx512"
            : __builtin_cpu_supports("avx2")   ? "avx2"
            : __builtin_cpu_supports("avx")    ? "avx"
            : __builtin_cpu_supports("sse4.2") ? "sse4.2"

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <tsuya/base/log.h>
 #include <tsuya/base/memory.h>
 #include <tsuya/generate/gray_scott.h>
 
@@ -16,13 +17,6 @@ enum
     OPERATIONS_5 = 17, // a cell: 6 multiplications and 11 additions
     OPERATIONS_9 = 27  // the corners: 6 additions, 2 multiplications and 2 additions more
 };
-
-static double clock_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void die(const char* what)
 {
@@ -187,13 +181,13 @@ static void measure(subject* s, version v)
     int steps = v == NAIVE ? 1 : 16 * (1 + (1 << 19) / (s->n * s->n)); // some milliseconds
     if (v != NAIVE && !ty_gray_scott_tune(s->field, tunings[v]))
         return;
-    double clock = clock_seconds(), begin = cpu_seconds();
+    double clock = ty_time_now(), begin = cpu_seconds();
     if (v == NAIVE)
         naive_step(&s->simple);
     else
         ty_gray_scott_step(s->field, steps, v == TWO ? s->two : NULL);
     double work = (double)steps * s->n * s->n, rate = work / (cpu_seconds() - begin);
-    clock = work / (clock_seconds() - clock);
+    clock = work / (ty_time_now() - clock);
     s->best[v] = rate > s->best[v] ? rate : s->best[v];
     if (v == FAST)
         s->clock_one = clock > s->clock_one ? clock : s->clock_one;
@@ -240,8 +234,8 @@ static void compare(int n, int stencil, double seconds, double limit)
     ty_error error;
     if (ty_workers_create(2, &s.two, &error) != TY_OK)
         die(error.text);
-    double end = clock_seconds() + seconds * VERSIONS;
-    while (clock_seconds() < end)
+    double end = ty_time_now() + seconds * VERSIONS;
+    while (ty_time_now() < end)
         for (int v = 0; v < VERSIONS; v++)
             measure(&s, (version)v);
     double g = 1e-9, per_cell = stencil == 9 ? OPERATIONS_9 : OPERATIONS_5;
@@ -263,10 +257,10 @@ static void film(void)
     if (ty_workers_create(0, &all, &error) != TY_OK)
         die(error.text);
     ty_gray_scott* field = field_make(1920, 1080, 5);
-    double begin = clock_seconds(), work = cpu_seconds();
+    double begin = ty_time_now(), work = cpu_seconds();
     for (int frame = 0; frame < 240; frame++)
         ty_gray_scott_step(field, 60, all);
-    double clock = clock_seconds() - begin;
+    double clock = ty_time_now() - begin;
     work = cpu_seconds() - work;
     printf("1920 x 1080, 240 frames of 60 steps, %d threads: %.1f s on the clock, %.1f s of processors, %.2f Gcell/s\n",
            ty_workers_count(all), clock, work, 240.0 * 60.0 * 1920.0 * 1080.0 * 1e-9 / clock);

@@ -2,14 +2,12 @@
 // Gray–Scott in time: which kernel, and what it has to look at in each row.
 #include "gray_scott_field.h"
 #include <string.h>
+#include <tsuya/base/cpu.h>
 
 stream_row_fn* gs_row_choose(ty_gray_scott_path path)
 {
 #if defined(__x86_64__)
-    bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-                __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
-                __builtin_cpu_supports("avx512cd");
-    if (wide && (path == TY_GRAY_SCOTT_BEST || path == TY_GRAY_SCOTT_AVX512))
+    if (ty_cpu_has_avx512() && (path == TY_GRAY_SCOTT_BEST || path == TY_GRAY_SCOTT_AVX512))
         return gs_row_avx512;
     if (__builtin_cpu_supports("avx2") && (path == TY_GRAY_SCOTT_BEST || path == TY_GRAY_SCOTT_AVX2))
         return gs_row_avx2;

@@ -112,8 +112,7 @@ static inline float cover(float left, float v, float right, float up, float down
 {
     float gx = 0.5f * (right - left), gy = 0.5f * (down - up);
     float slope = ty_max(sqrtf(gx * gx + gy * gy), 1e-6f);
-    float t = ty_clamp((v - iso) / slope + 0.5f, 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
+    return ty_smoothstep(ty_clamp((v - iso) / slope + 0.5f, 0.0f, 1.0f));
 }
 
 static void row_cover(const ty_loop_painter* p, int y, float* restrict out)

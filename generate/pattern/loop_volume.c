@@ -2,6 +2,7 @@
 // Memory of volumes, and single places in them.
 #include "loop_volume.h"
 #include <string.h>
+#include <tsuya/base/cpu.h>
 #include <tsuya/base/memory.h>
 
 ty_status ty_loop_volume_create(const int size[3], bool colored, bool blended, ty_loop_volume* out, ty_error* error)
@@ -59,10 +60,7 @@ void ty_loop_volume_close(ty_loop_volume* volume)
 
 ty_loop_sample_fn* ty_loop_sampler(void)
 {
-    bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512bw") &&
-                __builtin_cpu_supports("avx512vl");
-    return wide ? ty_loop_sample_avx512 : ty_loop_sample_base;
+    return ty_cpu_has_avx512() ? ty_loop_sample_avx512 : ty_loop_sample_base;
 }
 
 int ty_loop_label_of(const ty_loop_volume* volume, const ty_loop_corners* corners)

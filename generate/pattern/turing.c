@@ -2,6 +2,7 @@
 // A Turing field: its definition checked, its planes made when they are needed.
 #include "turing_state.h"
 #include <math.h>
+#include <tsuya/base/cpu.h>
 #include <tsuya/base/math.h>
 #include <tsuya/base/memory.h>
 
@@ -108,8 +109,7 @@ static bool hold_alloc(ty_turing* field)
 static stream_row_fn* row_choose(void)
 {
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd") &&
-        __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+    if (ty_cpu_has_avx512())
         return ty_turing_row_avx512;
 #endif
     return ty_turing_row_base;
