@@ -161,7 +161,7 @@ void ty_trace_fit_inner(const ty_world* world, uint32_t prototype)
         for (int k = 0; k < 3; k++)
             corner[k] = ty_map_point(&p->to_sphere, p->mesh->positions[p->mesh->triangles[i][k]]);
         ty_vec2 w = ty_triangle_closest(zero, corner[0], corner[1], corner[2]);
-        ty_vec3 at = ty_mad(ty_mad(corner[0], ty_sub(corner[1], corner[0]), w.x), ty_sub(corner[2], corner[0]), w.y);
+        ty_vec3 at = ty_triangle_at(corner[0], corner[1], corner[2], w);
         nearest_sqr = ty_min(nearest_sqr, ty_length_sqr(at));
     }
     // Smaller by what rounds in the test of a ray that comes from far away.

@@ -83,7 +83,6 @@ void pile_bridge_prepare(ty_pile* pile, pair* p, bool touching)
 {
     const ty_bridge_def* def = &pile->def.bridge;
     contact* c = &pile->contacts[p->slot + p->active];
-    p->pulled = false;
     p->bridged |= touching;
     if ((!p->bridged && p->active == 0) || !nearest_place(pile, p, c))
         return;

@@ -235,7 +235,7 @@ static void blocks_range(void* context, int64_t begin, int64_t end, int worker)
     (void)worker;
     const blocks_run* r = context;
     for (int i = r->from + (int)begin; i < r->from + (int)end; i++)
-        r->fn(r->context, i, r->blocks->first[i], r->blocks->first[i + 1]);
+        r->fn(r->context, r->blocks->first[i], r->blocks->first[i + 1]);
 }
 
 void pair_blocks_sweep(const pair_blocks* b, ty_workers* workers, block_fn* fn, void* context)

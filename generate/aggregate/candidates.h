@@ -61,6 +61,6 @@ typedef struct pair_blocks
 void pair_blocks_make(pair_blocks* blocks, const body_grid* grid, const void* pairs, size_t stride, int count,
                       int* order);
 
-// Runs fn over each block and its range of the order, class after class; blocks of one class at the same time.
-typedef void block_fn(void* context, int block, int begin, int end);
+// Runs fn over each block's range of the order, class after class; blocks of one class at the same time.
+typedef void block_fn(void* context, int begin, int end);
 void pair_blocks_sweep(const pair_blocks* blocks, ty_workers* workers, block_fn* fn, void* context);

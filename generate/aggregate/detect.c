@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // When candidates for contacts are found again, and how far they are looked for.
 #include "pile_state.h"
+#include <stdatomic.h>
 
 #define REACH_SHARE 0.08f // of a body's radius, mean distance that a pile is looked ahead
 
@@ -43,7 +44,7 @@ void pile_detect(ty_pile* pile, float margin, ty_workers* workers)
 typedef struct look
 {
     ty_pile* pile;
-    bool* far; // of each piece: one of its bodies moved too far
+    atomic_bool far; // a body moved too far
 } look;
 
 // Each of two balls may come nearer by .45 of the margin. An angle is at most 2.1 times the distance of its
@@ -51,7 +52,7 @@ typedef struct look
 static void moved_range(void* context, int64_t begin, int64_t end, int worker)
 {
     (void)worker;
-    const look* l = context;
+    look* l = context;
     const ty_pile* pile = l->pile;
     bool far = false;
     for (int i = (int)begin; i < (int)end; i++)
@@ -64,19 +65,15 @@ static void moved_range(void* context, int64_t begin, int64_t end, int worker)
         at->moved = ty_length(ty_sub(b->position, at->seen)) + lever * sqrtf(turn);
         far |= at->moved > 0.45f * at->reach;
     }
-    l->far[begin / PILE_PIECE] = far;
+    if (far)
+        atomic_store(&l->far, true);
 }
 
 bool pile_moved(ty_pile* pile, ty_workers* workers)
 {
     if (pile->stale || pile_walls_moved(pile))
         return true;
-    int pieces = pile->count / PILE_PIECE + 1;
-    look l = {pile, TY_ALLOC(bool, pieces)};
+    look l = {.pile = pile};
     pile_each_body(pile, workers, moved_range, &l);
-    bool far = false;
-    for (int k = 0; k < pieces; k++)
-        far |= l.far[k];
-    ty_free(l.far);
-    return far;
+    return atomic_load(&l.far);
 }

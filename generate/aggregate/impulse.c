@@ -265,9 +265,8 @@ static void pair_relax(ty_pile* pile, const pair* p)
 // --- blocks ---
 
 // What a pair keeps acts before anything is solved, and its contacts are in the cache now.
-static void block_prepare(void* context, int block, int begin, int end)
+static void block_prepare(void* context, int begin, int end)
 {
-    (void)block;
     ty_pile* pile = context;
     int slot = pile->near.pairs[begin].first + begin; // room for each touch, and a pull of each pair
     for (int i = begin; i < end; i++)
@@ -295,18 +294,16 @@ static void contacts_reserve(ty_pile* pile)
     pile->contacts = ty_grow(NULL, 0, (size_t)pile->contact_capacity, sizeof(contact));
 }
 
-static void block_solve(void* context, int block, int begin, int end)
+static void block_solve(void* context, int begin, int end)
 {
-    (void)block;
     ty_pile* pile = context;
     for (int i = begin; i < end; i++)
         if (pile->near.pairs[i].active + pile->near.pairs[i].pulled > 0)
             pair_solve(pile, &pile->near.pairs[i]);
 }
 
-static void block_relax(void* context, int block, int begin, int end)
+static void block_relax(void* context, int begin, int end)
 {
-    (void)block;
     ty_pile* pile = context;
     for (int i = begin; i < end; i++)
         if (pile->near.pairs[i].active > 0)

@@ -69,9 +69,8 @@ static void pair_project(ty_pile* pile, const pair* p)
     }
 }
 
-static void block_project(void* context, int block, int begin, int end)
+static void block_project(void* context, int begin, int end)
 {
-    (void)block;
     ty_pile* pile = context;
     for (int i = begin; i < end; i++)
         pair_project(pile, &pile->near.pairs[i]);

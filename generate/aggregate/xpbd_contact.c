@@ -251,9 +251,8 @@ double xpbd_contacts_energy(const ty_xpbd* x)
     return sum;
 }
 
-static void block_solve(void* context, int block, int begin, int end)
+static void block_solve(void* context, int begin, int end)
 {
-    (void)block;
     ty_xpbd* x = context;
     for (int i = begin; i < end; i++)
     {

@@ -7,7 +7,7 @@ const char* const fill_preset_names[] = {"stripes",  "plain",    "slow",   "dyin
                                          "worms",    "coral",    "maze",   "holes", "pulses", "chaos",
                                          "restless", "solitons", "moving", "waves", NULL};
 const char* const fill_convention_names[] = {"pearson", "munafo", "sims", "processing", NULL};
-const char* const fill_op_names[] = {"mark", "unmark", "hole", "fill", "seed", "barrier", "unbarrier", NULL};
+static const char* const op_names[] = {"mark", "unmark", "hole", "fill", "seed", "barrier", "unbarrier", NULL};
 
 // --- marks ---
 
@@ -108,7 +108,7 @@ static void event_set_default(void* def)
 static const ty_param event_rows[] = {
     FIELD("at", TY_PARAM_INT, "", 1, 1e6, at, "the frame that shows it first"),
     FIELD("until", TY_PARAM_INT, "", 0, 1e6, until, "done again at each frame up to this; 0: at one alone"),
-    {"op", TY_PARAM_ENUM, "", 0, 0, fill_op_names, NULL, offsetof(OWNER, op),
+    {"op", TY_PARAM_ENUM, "", 0, 0, op_names, NULL, offsetof(OWNER, op),
      "mark, unmark (mark 0), hole (u 1, v 0), fill (the plain state), seed (spots), barrier, unbarrier", true},
     FIELD("mark", TY_PARAM_STRING, "", 0, 0, mark,
           "name or number: what mark sets, and hole, fill, seed if it is given"),

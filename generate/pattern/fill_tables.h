@@ -6,5 +6,4 @@
 
 extern const char* const fill_preset_names[]; // as ty_fill_presets has them, up to NULL
 extern const char* const fill_convention_names[];
-extern const char* const fill_op_names[];
 extern const ty_param_table fill_mark_table, fill_event_table, fill_region_table, fill_auto_table, fill_run_table;

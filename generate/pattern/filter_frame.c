@@ -132,7 +132,8 @@ static ty_status over_threshold(const ty_filter_run* run, int field, float* u, t
     const ty_filter_recipe* r = run->recipe;
     size_t size = (size_t)run->width * (size_t)run->height;
     calibration* c = NULL;
-    if (r->mode == TY_FILTER_TONE && r->tone.calibrated)
+    const bool calibrated = r->mode == TY_FILTER_TONE && r->tone.calibrated;
+    if (calibrated)
     {
         c = TY_TRY_ALLOC(calibration, 1);
         if (!c)
@@ -147,7 +148,7 @@ static ty_status over_threshold(const ty_filter_run* run, int field, float* u, t
         u[i] -= run->alive ? ty_lerp(r->threshold, threshold, run->alive[i]) : threshold;
     }
     ty_free(c);
-    return c ? correct_places(run, field, u, error) : TY_OK;
+    return calibrated ? correct_places(run, field, u, error) : TY_OK;
 }
 
 // --- pixels ---

@@ -72,9 +72,10 @@ ty_status ty_plane_file_open(const char* path, const char* key, int first, int l
     return status;
 }
 
-// Interleaved to planes; channels beyond `count` are left out.
-static ty_status planes_take(const ty_image* image, int count, ty_planes* out, ty_error* error)
+// Interleaved to planes; channels beyond the first three are left out.
+static ty_status planes_take(const ty_image* image, ty_planes* out, ty_error* error)
 {
+    const int count = 3;
     size_t size = (size_t)image->width * (size_t)image->height, step = (size_t)image->channels;
     *out = (ty_planes){image->width, image->height, count, TY_TRY_ALLOC(float, size*(size_t)count)};
     if (!out->values)
@@ -83,18 +84,6 @@ static ty_status planes_take(const ty_image* image, int count, ty_planes* out, t
         for (size_t i = 0; i < size; i++)
             out->values[(size_t)c * size + i] = image->pixels[i * step + (size_t)c];
     return TY_OK;
-}
-
-ty_status ty_plane_file_read(const ty_plane_file* file, int frame, ty_planes* out, ty_error* error)
-{
-    ty_image image;
-    *out = (ty_planes){0};
-    ty_status status = image_read(file, frame, &image, error);
-    if (status != TY_OK)
-        return status;
-    status = planes_take(&image, image.channels, out, error);
-    ty_image_term(&image);
-    return status;
 }
 
 static float channel_of(const float* pixel, int channels, ty_plane_channel channel)
@@ -156,7 +145,7 @@ ty_status ty_plane_file_read_color(const ty_plane_file* file, int frame, const t
         status = ty_color_convert(color, space, "ACEScg", rgb.pixels, image.width * image.height, 3, error);
     }
     if (status == TY_OK)
-        status = planes_take(&rgb, 3, out, error);
+        status = planes_take(&rgb, out, error);
     ty_free(rgb.pixels);
     ty_image_term(&image);
     return status;

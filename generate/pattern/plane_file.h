@@ -35,8 +35,7 @@ typedef struct ty_plane_file
 // frame, or with frames of two sizes: TY_BAD_INPUT that tells which.
 TY_CHECKED ty_status ty_plane_file_open(const char* path, const char* key, int first, int last, ty_plane_file* out,
                                         ty_error* error);
-// The file, or that frame of the sequence. One of another size than the first: TY_BAD_INPUT with both sizes.
-TY_CHECKED ty_status ty_plane_file_read(const ty_plane_file* file, int frame, ty_planes* out, ty_error* error);
+// Of a sequence that frame is read. One of another size than the first: TY_BAD_INPUT with both sizes.
 // One channel as it stands in the file: [height][width], the caller frees it with ty_free.
 TY_CHECKED ty_status ty_plane_file_read_channel(const ty_plane_file* file, int frame, ty_plane_channel channel,
                                                 float** out, ty_error* error);
