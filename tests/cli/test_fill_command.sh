@@ -94,6 +94,24 @@ refuse "cells" "the state to go on from has 64 x 48" heal.yaml -o 'out.##.exr' -
 expect 4 "$tsuya" fill heal.yaml -o 'out.##.exr' --resume whole.01.exr
 says "is not one of a fill"
 
+# A state knows its recipe: what differs is named; more frames, other looks and later events go on.
+sed 's/preset: dying/preset: slow/' heal.yaml >bad.yaml
+refuse "bad.yaml:9" "marks[1]: differs from that of the state" bad.yaml -o 'out.##.exr' --resume part.state.exr
+refuse "region.threshold" "region.threshold: differs from that of the state to go on from; so do seed" heal.yaml -o 'out.##.exr' --set region.threshold=0.2 --set seed=2 --resume part.state.exr
+refuse "tile" "so do stencil" heal.yaml -o 'out.##.exr' --set tile=both --set stencil=9 --resume part.state.exr
+refuse "run.steps" "run.steps: differs" heal.yaml -o 'out.##.exr' --set run.steps=41 --resume part.state.exr
+sed 's/radius: 12/radius: 11/' heal.yaml >bad.yaml
+refuse "bad.yaml:12" "events[0]: differs" bad.yaml -o 'out.##.exr' --resume part.state.exr
+sed '/op: hole/d' heal.yaml >bad.yaml
+refuse "bad.yaml:12" "events[0]: differs from that of the state to go on from; so do events[1]" bad.yaml -o 'out.##.exr' --resume part.state.exr
+expect 0 "$tsuya" fill heal.yaml -o 'plain.##.exr' --set run.frames=2 --set 'events=[]' --state plain.state.exr
+refuse "outputs" "does not know the past" heal.yaml -o 'out.##.exr' --set 'events=[]' --also trail --resume plain.state.exr
+sed 's/color: \[0.6/color: [0.7/; s/steps: 40/steps: 40.0/; s/preset: plain/feed: 0.072, kill: 0.059/' heal.yaml >later.yaml
+echo '  - { at: 5, op: hole, center: [10, 10], radius: 4 }' >>later.yaml
+expect 0 "$tsuya" fill later.yaml -o 'later.##.exr' --set run.frames=7 --also u,v
+expect 0 "$tsuya" fill later.yaml -o 'latest.##.exr' --set run.frames=7 --also u,v --resume part.state.exr
+same later.07.exr latest.07.exr
+
 # Interrupted: what it leaves goes on.
 "$tsuya" fill heal.yaml -o 'stop.####.exr' --set run.frames=9000 --state stop.state.exr >out.txt 2>err.txt &
 child=$!

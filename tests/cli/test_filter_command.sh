@@ -74,6 +74,8 @@ expect 0 "$tsuya" info state.exr --json
 prints '"tsuya/step"'
 expect 3 "$tsuya" filter filter.yaml -o no.exr --resume state.exr
 says "cells: [300, 300]; the state to go on from has 600 x 600"
+expect 3 "$tsuya" filter filter.yaml -o no.exr --set seed=3 --set u.decay=0.04 --resume state.exr --set 'cells=[600,600]'
+says "u.decay: differs from that of the state to go on from; so do seed"
 expect 4 "$tsuya" filter filter.yaml -o no.exr --resume one.exr
 says "not one of a filter"
 absent no.exr
