@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Turing field: the patterns that it is known for, what rims do to stripes, what limits and masks keep, equal bits.
-#include "../../generate/pattern/turing_state.h"
-#include "base/cmocka_all.h"
-#include <math.h>
+// A Turing field: the patterns that it is known for, what edges do, what limits and masks keep, equal bits.
+#include "turing_fields.h"
 #include <string.h>
-#include <tsuya/base/math.h>
-#include <tsuya/base/memory.h>
-#include <tsuya/base/rng.h>
 
 // The kernel a cell at a time.
 #if !defined(__clang__)
@@ -19,46 +14,6 @@ stream_row_fn ty_turing_row_one_by_one;
 #if !defined(__clang__)
 #pragma GCC pop_options
 #endif
-
-static ty_turing* create(const ty_turing_def* def)
-{
-    ty_turing* field;
-    ty_error error;
-    assert_int_equal(ty_turing_create(def, &field, &error), TY_OK);
-    return field;
-}
-
-static void need(ty_turing* field, ty_turing_plane plane)
-{
-    ty_error error;
-    assert_int_equal(ty_turing_need(field, plane, &error), TY_OK);
-}
-
-static void start_by_chance(ty_turing* field, uint64_t seed)
-{
-    ty_rng rng = ty_rng_make((ty_seed){seed}, 1, 0);
-    for (int y = 0; y < field->def.height; y++)
-        for (int x = 0; x < field->def.width; x++)
-        {
-            ty_turing_u(field, y)[x] = ty_rng_float(&rng);
-            ty_turing_v(field, y)[x] = ty_rng_float(&rng);
-        }
-}
-
-static void run_until(ty_turing* field, float time)
-{
-    ty_turing_step(field, (int)(time / ty_turing_time_step(field) + 0.5f), NULL);
-}
-
-static ty_turing_def preset(float constant, float du, float dv, int size)
-{
-    ty_turing_def def = ty_turing_def_default();
-    def.width = def.height = size;
-    def.u.constant = constant;
-    def.u.diffusion = du;
-    def.v.diffusion = dv;
-    return def;
-}
 
 typedef struct census
 {
@@ -139,75 +94,9 @@ static void larger_diffusion_is_coarser(void** state)
     assert_true(b.spots * 3 < a.spots && b.spots * 5 > a.spots); // an area of four times each
 }
 
-// --- rims ---
+// --- edges ---
 
-static float distance(int x, int y)
-{
-    return sqrtf(ty_sqr((float)x - 100.0f) + ty_sqr((float)y - 100.0f));
-}
-
-// Share of the gradient's energy along the radius, between two radii.
-static float normal_share(ty_turing* field, float low, float high)
-{
-    double normal = 0.0, all = 0.0;
-    for (int y = 1; y < 199; y++)
-        for (int x = 1; x < 199; x++)
-        {
-            float d = distance(x, y);
-            if (d < low || d > high)
-                continue;
-            float gx = ty_turing_u(field, y)[x + 1] - ty_turing_u(field, y)[x - 1];
-            float gy = ty_turing_u(field, y + 1)[x] - ty_turing_u(field, y - 1)[x];
-            float along = (gx * ((float)x - 100.0f) + gy * ((float)y - 100.0f)) / d;
-            normal += (double)ty_sqr(along);
-            all += (double)(gx * gx + gy * gy);
-        }
-    return (float)(normal / all);
-}
-
-static ty_turing* disc(bool fixed, float soft)
-{
-    ty_turing_def def = preset(0.05f, 0.04f, 0.5f, 200);
-    ty_turing* field = create(&def);
-    need(field, TY_TURING_HOLD);
-    if (!fixed)
-        need(field, TY_TURING_OPEN);
-    start_by_chance(field, 4242);
-    for (int y = 0; y < 200; y++)
-        for (int x = 0; x < 200; x++)
-        {
-            float inside = soft > 0.0f ? ty_clamp((85.0f - distance(x, y)) / soft + 0.5f, 0.0f, 1.0f)
-                                       : (distance(x, y) < 85.0f ? 1.0f : 0.0f);
-            float rate = inside > 0.0f ? fixed ? 0.06f * (1.0f - inside) / inside : 0.0f : INFINITY;
-            ty_turing_row(field, TY_TURING_HOLD, y)[x] = rate;
-            ty_turing_row(field, TY_TURING_HOLD_U, y)[x] = 5.0f;
-            if (!fixed)
-                ty_turing_row(field, TY_TURING_OPEN, y)[x] = inside;
-        }
-    run_until(field, 3000.0f);
-    return field;
-}
-
-static void stripes_go_along_a_fixed_rim_and_meet_a_free_one(void** state)
-{
-    (void)state;
-    for (int i = 0; i < 2; i++)
-    {
-        float soft = i ? 3.0f : 0.0f;
-        ty_turing *fixed = disc(true, soft), *open = disc(false, soft);
-        float along = normal_share(fixed, 75.0f, 81.0f), meeting = 1.0f - normal_share(open, 75.0f, 81.0f);
-        print_message("soft %g: fixed %.3f normal, free %.3f tangential\n", (double)soft, (double)along,
-                      (double)meeting);
-        assert_true(along > 0.95f);
-        assert_true(meeting > 0.57f);                          // half were no direction
-        assert_true(normal_share(fixed, 20.0f, 60.0f) > 0.6f); // it orders the inside too
-        assert_float_equal(ty_turing_u(fixed, 0)[0], 5.0f, 0.0f);
-        ty_turing_destroy(fixed);
-        ty_turing_destroy(open);
-    }
-}
-
-// Fixed edges of the grid do the same, and far sides are neighbours where it wraps.
+// Fixed edges of the grid are held, and far sides are neighbours where it wraps.
 static void edges_hold_free_or_wrap(void** state)
 {
     (void)state;
@@ -454,7 +343,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(three_presets_are_told_apart),
         cmocka_unit_test(larger_diffusion_is_coarser),
-        cmocka_unit_test(stripes_go_along_a_fixed_rim_and_meet_a_free_one),
         cmocka_unit_test(edges_hold_free_or_wrap),
         cmocka_unit_test(a_divergence_keeps_the_sum),
         cmocka_unit_test(stripes_follow_the_activators_direction),
