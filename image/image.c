@@ -2,6 +2,7 @@
 // Image files as interleaved floats: recognised by content, checked for proportion, then read through OpenImageIO.
 #include "image_check.h"
 #include "image_oiio.h"
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -72,69 +73,150 @@ static const char* space_of(const ty_oiio_info* info)
     return space ? space : info->color_space;
 }
 
-static ty_status read_open(const char* path, const char* format, ty_oiio_input* input, const ty_oiio_info* info,
-                           size_t size, ty_image* out, ty_error* error)
+// An open file whose header has been looked at.
+typedef struct opened
 {
-    ty_status status = check_info(path, format, info, size, error);
-    if (status)
-        return status;
-    size_t count = (size_t)info->width * (size_t)info->height * (size_t)info->channels;
+    const char *path, *format;
+    size_t size;
+    ty_oiio_input* input;
+    ty_oiio_info info;
+} opened;
+
+static ty_status read_range(const opened* file, int begin, int end, ty_image* out, ty_error* error)
+{
+    const char* path = file->path;
+    const ty_oiio_info* info = &file->info;
+    size_t count = (size_t)info->width * (size_t)info->height * (size_t)(end - begin);
     float* pixels = TY_TRY_ALLOC(float, count);
     if (!pixels)
         return shim_status(TY_OIIO_NO_MEMORY, path, "", "", error);
     char text[512];
-    ty_oiio_result result = ty_oiio_read(input, pixels, text, sizeof text);
+    ty_oiio_result result = ty_oiio_read(file->input, begin, end, pixels, text, sizeof text);
     if (result != TY_OIIO_OK)
     {
         ty_free(pixels);
         return shim_status(result, path, "cannot read image", text, error);
     }
-    *out = (ty_image){.width = info->width, .height = info->height, .channels = info->channels, .pixels = pixels};
+    *out = (ty_image){.width = info->width, .height = info->height, .channels = end - begin, .pixels = pixels};
     out->is_float = info->is_float != 0;
     snprintf(out->color_space, sizeof out->color_space, "%s", space_of(info));
     return TY_OK;
 }
 
-static ty_status input_open(const char* path, const char** format, size_t* size, ty_oiio_input** input,
-                            ty_oiio_info* info, ty_error* error)
+// On success the caller closes out->input.
+static ty_status input_open(const char* path, opened* out, ty_error* error)
 {
     char text[512];
-    ty_status status = inspect(path, format, size, error);
+    *out = (opened){.path = path};
+    ty_status status = inspect(path, &out->format, &out->size, error);
     if (status)
         return status;
-    ty_oiio_result result = ty_oiio_open(*format, path, input, info, text, sizeof text);
-    return result == TY_OIIO_OK ? TY_OK : shim_status(result, path, "cannot read image", text, error);
+    ty_oiio_result result = ty_oiio_open(out->format, path, &out->input, &out->info, text, sizeof text);
+    if (result != TY_OIIO_OK)
+        return shim_status(result, path, "cannot read image", text, error);
+    status = check_info(path, out->format, &out->info, out->size, error);
+    if (status)
+        ty_oiio_close(out->input);
+    return status;
 }
 
 ty_status ty_image_read(const char* path, ty_image* out, ty_error* error)
 {
+    opened file;
     *out = (ty_image){0};
-    const char* format = NULL;
-    size_t size = 0;
-    ty_oiio_input* input = NULL;
-    ty_oiio_info info;
-    ty_status status = input_open(path, &format, &size, &input, &info, error);
+    ty_status status = input_open(path, &file, error);
     if (status)
         return status;
-    status = read_open(path, format, input, &info, size, out, error);
-    ty_oiio_close(input);
+    status = read_range(&file, 0, file.info.channels, out, error);
+    ty_oiio_close(file.input);
     return status;
+}
+
+// Of the first part; -1 = none.
+static int find_channel(const opened* file, const char* name)
+{
+    for (int i = 0; i < file->info.channels; i++)
+        if (strcmp(ty_oiio_channel_name(file->input, i), name) == 0)
+            return i;
+    return -1;
+}
+
+static ty_status no_channel(const opened* file, const char* name, ty_error* error)
+{
+    char list[400] = "";
+    for (int i = 0; i < file->info.channels && strlen(list) < sizeof list - 1; i++)
+        snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", i > 0 ? ", " : "",
+                 ty_oiio_channel_name(file->input, i));
+    return ty_error_set_at(error, TY_BAD_INPUT, file->path, 0, 0, "no channel '%.100s'; the file has %s", name, list);
+}
+
+// The channels that are the picture, in the order in which they are to be; returns how many.
+static int picture_channels(const opened* file, int channel[4])
+{
+    static const char* const names[] = {"R", "G", "B", "A"};
+    int count = 0, grey = find_channel(file, "Y"), alpha = find_channel(file, "A");
+    while (count < 4 && (channel[count] = find_channel(file, names[count])) >= 0)
+        count++;
+    if (count >= 3)
+        return count;
+    channel[0] = grey;
+    channel[1] = alpha;
+    if (grey >= 0)
+        return alpha >= 0 ? 2 : 1;
+    for (count = 0; count < 4 && count < file->info.channels; count++)
+        channel[count] = count;
+    return count;
+}
+
+// In place: of each pixel the channels wanted.
+static void keep_channels(ty_image* image, const int* channel, int count)
+{
+    size_t size = (size_t)image->width * (size_t)image->height, all = (size_t)image->channels;
+    for (size_t i = 0; i < size; i++)
+    {
+        float kept[4];
+        for (int c = 0; c < count; c++)
+            kept[c] = image->pixels[i * all + (size_t)channel[c]];
+        memcpy(image->pixels + i * (size_t)count, kept, (size_t)count * sizeof *kept);
+    }
+    image->channels = count;
+}
+
+ty_status ty_image_read_channel(const char* path, const char* channel, ty_image* out, ty_error* error)
+{
+    opened file;
+    *out = (ty_image){0};
+    ty_status status = input_open(path, &file, error);
+    if (status)
+        return status;
+    int wanted[4], count = channel ? 1 : picture_channels(&file, wanted), begin = INT_MAX, end = 0;
+    if (channel)
+        wanted[0] = find_channel(&file, channel);
+    for (int c = 0; c < count; c++)
+    {
+        begin = wanted[c] < begin ? wanted[c] : begin;
+        end = wanted[c] + 1 > end ? wanted[c] + 1 : end;
+    }
+    status = begin < 0 ? no_channel(&file, channel, error) : read_range(&file, begin, end, out, error);
+    ty_oiio_close(file.input);
+    if (status)
+        return status;
+    for (int c = 0; c < count; c++)
+        wanted[c] -= begin;
+    keep_channels(out, wanted, count);
+    return TY_OK;
 }
 
 ty_status ty_image_read_size(const char* path, int* width, int* height, ty_error* error)
 {
-    const char* format = NULL;
-    size_t size = 0;
-    ty_oiio_input* input = NULL;
-    ty_oiio_info info;
-    ty_status status = input_open(path, &format, &size, &input, &info, error);
+    opened file;
+    ty_status status = input_open(path, &file, error);
     if (status)
         return status;
-    status = check_info(path, format, &info, size, error);
-    *width = info.width;
-    *height = info.height;
-    ty_oiio_close(input);
-    return status;
+    *width = file.info.width;
+    *height = file.info.height;
+    ty_oiio_close(file.input);
+    return TY_OK;
 }
 
 static const char* output_format(const char* path)

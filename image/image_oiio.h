@@ -30,9 +30,11 @@ extern "C"
     // format is OpenImageIO's name of the reader ("png"); text holds text_size bytes. On failure *out is NULL.
     ty_oiio_result ty_oiio_open(const char* format, const char* path, ty_oiio_input** out, ty_oiio_info* info,
                                 char* text, size_t text_size);
-    // The first part at full resolution, interleaved; pixels has width * height * channels elements.
-    ty_oiio_result ty_oiio_read(ty_oiio_input* input, float* pixels, char* text, size_t text_size);
-    void ty_oiio_close(ty_oiio_input* input); // NULL is allowed
+    // The first part at full resolution, interleaved; pixels has width * height * (end - begin) elements, of the
+    // channels from begin to before end.
+    ty_oiio_result ty_oiio_read(ty_oiio_input* input, int begin, int end, float* pixels, char* text, size_t text_size);
+    const char* ty_oiio_channel_name(const ty_oiio_input* input, int channel); // until it is closed; "" = none
+    void ty_oiio_close(ty_oiio_input* input);                                  // NULL is allowed
 
     typedef struct ty_oiio_output ty_oiio_output; // opaque: the bytes of a file
 

@@ -14,7 +14,7 @@
 #include <tsuya/base/memory.h>
 #include <unistd.h>
 
-#define FORMAT "tsuya texture 2" // in the key: what another version made is something else
+#define FORMAT "tsuya texture 3" // in the key: what another version made is something else
 
 enum
 {
@@ -81,11 +81,20 @@ ty_status ty_mip_cache_check(ty_mip_cache* cache, ty_error* error)
                         cache->reason);
 }
 
-static ty_status make_key(const ty_mip_cache* cache, const char* path, const char* space, char key[33], ty_error* error)
+// One channel by itself is numbers.
+static const char* space_of(const ty_mip_texture_def* what)
+{
+    return what->channel ? "raw" : what->color_space;
+}
+
+static ty_status make_key(const ty_mip_cache* cache, const ty_mip_texture_def* what, const char* path, char key[33],
+                          ty_error* error)
 {
     ty_hasher* hasher = ty_hasher_create();
     ty_hasher_add_string(hasher, FORMAT);
+    const char* space = space_of(what);
     ty_hasher_add_string(hasher, space ? space : "");
+    ty_hasher_add_string(hasher, what->channel ? what->channel : "");
     if (!space || strcmp(space, "raw") != 0)
         ty_hasher_add_string(hasher, ty_color_identity(cache->color));
     ty_status status = ty_file_hash(path, UINT64_MAX, hasher, error);
@@ -93,16 +102,16 @@ static ty_status make_key(const ty_mip_cache* cache, const char* path, const cha
     return status;
 }
 
-static ty_status convert(ty_mip_cache* cache, const char* path, const char* space, const char* key, const char* target,
-                         ty_error* error)
+static ty_status convert(ty_mip_cache* cache, const ty_mip_texture_def* what, const char* path, const char* key,
+                         const char* target, ty_error* error)
 {
     ty_image image;
     ty_mip_levels levels;
     double start = ty_time_now();
-    ty_status status = ty_image_read(path, &image, error);
+    ty_status status = ty_image_read_channel(path, what->channel, &image, error);
     if (status)
         return status;
-    status = ty_mip_levels_build(&image, space, cache->color, &levels, error);
+    status = ty_mip_levels_build(&image, space_of(what), cache->color, &levels, error);
     ty_image_term(&image);
     if (status)
         return status;
@@ -117,14 +126,14 @@ static ty_status convert(ty_mip_cache* cache, const char* path, const char* spac
     return TY_OK;
 }
 
-static ty_status convert_kept(ty_mip_cache* cache, const char* path, const char* space, const char* key,
+static ty_status convert_kept(ty_mip_cache* cache, const ty_mip_texture_def* what, const char* path, const char* key,
                               const char* target, ty_error* error)
 {
     ty_atomic_file file;
     ty_status status = ty_atomic_begin(&file, target, error);
     if (status)
         return status;
-    status = convert(cache, path, space, key, file.temporary, error);
+    status = convert(cache, what, path, key, file.temporary, error);
     status = status ? status : ty_mip_seal(file.temporary, error);
     if (!status)
         return ty_atomic_commit(&file, error);
@@ -133,7 +142,7 @@ static ty_status convert_kept(ty_mip_cache* cache, const char* path, const char*
 }
 
 // A file that nobody else sees and that is gone with the process, whatever ends it.
-static ty_status convert_passing(ty_mip_cache* cache, const char* path, const char* space, const char* key,
+static ty_status convert_passing(ty_mip_cache* cache, const ty_mip_texture_def* what, const char* path, const char* key,
                                  char target[TY_PATH_MAX], ty_error* error)
 {
     char name[] = "/tmp/tsuya-XXXXXX";
@@ -154,7 +163,7 @@ static ty_status convert_passing(ty_mip_cache* cache, const char* path, const ch
     }
     cache->temporary[cache->temporary_count++] = fd;
     snprintf(target, TY_PATH_MAX, "/proc/self/fd/%d", fd);
-    return convert(cache, path, space, key, target, error);
+    return convert(cache, what, path, key, target, error);
 }
 
 static void add_image(ty_mip_cache* cache, ty_mip_image* image)
@@ -185,7 +194,7 @@ static bool open_kept(ty_mip_cache* cache, const char* kept, ty_mip_image* image
     return false;
 }
 
-static ty_status open_image(ty_mip_cache* cache, const char* path, const char* space, ty_mip_image* image,
+static ty_status open_image(ty_mip_cache* cache, const ty_mip_texture_def* what, const char* path, ty_mip_image* image,
                             ty_error* error)
 {
     char target[TY_PATH_MAX] = "", name[64], text[TEXT];
@@ -194,19 +203,19 @@ static ty_status open_image(ty_mip_cache* cache, const char* path, const char* s
         ty_path_join(cache->folder, name, target);
     if (cache->folder && open_kept(cache, target, image))
         return TY_OK;
-    ty_status status = cache->folder ? convert_kept(cache, path, space, image->key, target, error)
-                                     : convert_passing(cache, path, space, image->key, target, error);
+    ty_status status = cache->folder ? convert_kept(cache, what, path, image->key, target, error)
+                                     : convert_passing(cache, what, path, image->key, target, error);
     if (status)
         return status;
     ty_oiio_result result = ty_oiio_tiles_open(cache->tiles, target, image->key, &image->file, text, sizeof text);
     return result == TY_OIIO_OK ? TY_OK : shim_status(result, path, "cannot read the converted texture", text, error);
 }
 
-ty_status ty_mip_cache_get(ty_mip_cache* cache, const char* path, const char* space, const ty_mip_image** out,
-                           ty_error* error)
+ty_status ty_mip_cache_get(ty_mip_cache* cache, const ty_mip_texture_def* what, const char* path,
+                           const ty_mip_image** out, ty_error* error)
 {
     char key[33];
-    ty_status status = make_key(cache, path, space, key, error);
+    ty_status status = make_key(cache, what, path, key, error);
     if (status)
         return status;
     for (int i = 0; i < cache->image_count; i++)
@@ -217,7 +226,7 @@ ty_status ty_mip_cache_get(ty_mip_cache* cache, const char* path, const char* sp
         }
     ty_mip_image* image = TY_ALLOC(ty_mip_image, 1);
     memcpy(image->key, key, sizeof key);
-    status = open_image(cache, path, space, image, error);
+    status = open_image(cache, what, path, image, error);
     if (status)
     {
         ty_free(image);

@@ -26,6 +26,7 @@ struct ty_mip_cache
     char reason[256]; // of the first failure
 };
 
-// The image of a file by its content and space; lives as long as the cache.
-TY_CHECKED ty_status ty_mip_cache_get(ty_mip_cache* cache, const char* path, const char* space,
+// The image of a file by its content and of what is asked for (path, color_space and channel of what count); lives as
+// long as the cache.
+TY_CHECKED ty_status ty_mip_cache_get(ty_mip_cache* cache, const ty_mip_texture_def* what, const char* path,
                                       const ty_mip_image** out, ty_error* error);

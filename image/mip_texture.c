@@ -57,6 +57,7 @@ ty_status ty_mip_texture_create(ty_mip_cache* cache, const ty_mip_texture_def* d
     *texture = (ty_mip_texture){.cache = cache, .def = *def, .first = first, .frame_count = count};
     texture->def.path = ty_string_copy(def->path);
     texture->def.color_space = def->color_space ? ty_string_copy(def->color_space) : NULL;
+    texture->def.channel = def->channel ? ty_string_copy(def->channel) : NULL;
     texture->frames = TY_ALLOC(const ty_mip_image*, count);
     *out = texture;
     return TY_OK;
@@ -68,6 +69,7 @@ void ty_mip_texture_destroy(ty_mip_texture* texture)
         return;
     ty_free((char*)texture->def.path);
     ty_free((char*)texture->def.color_space);
+    ty_free((char*)texture->def.channel);
     ty_free(texture->frames);
     ty_free(texture);
 }
@@ -92,7 +94,7 @@ ty_status ty_mip_texture_verify(const ty_mip_texture* texture, ty_error* error)
     {
         ty_image image;
         ty_path_frame(texture->def.path, texture->first + i, path);
-        status = ty_image_read(path, &image, error);
+        status = ty_image_read_channel(path, texture->def.channel, &image, error);
         if (status)
             break;
         width = i ? width : image.width;
@@ -103,7 +105,7 @@ ty_status ty_mip_texture_verify(const ty_mip_texture* texture, ty_error* error)
     }
     const char* space = texture->def.color_space;
     float black[3] = {0.0f, 0.0f, 0.0f};
-    if (!status && space && strcmp(space, "raw") != 0)
+    if (!status && !texture->def.channel && space && strcmp(space, "raw") != 0)
         status = ty_color_convert(texture->cache->color, space, "ACEScg", black, 1, 3, error);
     return status;
 }
@@ -160,7 +162,7 @@ static ty_status load_frame(ty_mip_texture* texture, int i, ty_error* error)
     if (texture->frames[i])
         return TY_OK;
     ty_path_frame(texture->def.path, texture->first + i, path);
-    ty_status status = ty_mip_cache_get(texture->cache, path, texture->def.color_space, &image, error);
+    ty_status status = ty_mip_cache_get(texture->cache, &texture->def, path, &image, error);
     if (status)
         return status;
     const ty_oiio_tile_file *file = &image->file, *other = texture->any ? &texture->any->file : file;

@@ -47,9 +47,14 @@ ty_oiio_result ty_oiio_open(const char* format, const char* path, ty_oiio_input*
     return m ? m->ty_oiio_open(format, path, out, info, text, text_size) : TY_OIIO_FAILED;
 }
 
-ty_oiio_result ty_oiio_read(ty_oiio_input* input, float* pixels, char* text, size_t text_size)
+ty_oiio_result ty_oiio_read(ty_oiio_input* input, int begin, int end, float* pixels, char* text, size_t text_size)
 {
-    return present()->ty_oiio_read(input, pixels, text, text_size);
+    return present()->ty_oiio_read(input, begin, end, pixels, text, text_size);
+}
+
+const char* ty_oiio_channel_name(const ty_oiio_input* input, int channel)
+{
+    return present()->ty_oiio_channel_name(input, channel);
 }
 
 void ty_oiio_close(ty_oiio_input* input)

@@ -12,6 +12,7 @@
 #define TY_OIIO_FUNCTIONS(X)                                                                                           \
     X(ty_oiio_open)                                                                                                    \
     X(ty_oiio_read)                                                                                                    \
+    X(ty_oiio_channel_name)                                                                                            \
     X(ty_oiio_close)                                                                                                   \
     X(ty_oiio_encode)                                                                                                  \
     X(ty_oiio_output_bytes)                                                                                            \

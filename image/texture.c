@@ -64,7 +64,7 @@ ty_status ty_texture_create(const ty_texture_def* def, const ty_color* color, ty
 {
     *out = NULL;
     ty_image image;
-    ty_status status = ty_image_read(def->path, &image, error);
+    ty_status status = ty_image_read_channel(def->path, NULL, &image, error);
     if (status)
         return status;
     const char* space =

@@ -189,10 +189,12 @@ const char* ty_override_text(ty_arena* arena, const ty_scene_options* options); 
 bool ty_recipe_is_file(const ty_node* node); // a scalar that names .yaml, .yml or .json
 // The file's mapping in place of its name; what: "recipe" or "calibration", for messages.
 void ty_recipe_inline(ty_loader* loader, ty_node** slot, const char* what);
-bool ty_recipe_is_place(const char* key);                   // aggregate, mesh, frames
-const char* ty_recipe_place(const ty_generator* generator); // the one for what it makes
+bool ty_recipe_is_place(const char* key); // aggregate, mesh, frames, fill, loop, filter
+bool ty_recipe_belongs(const ty_generator* generator, const char* place);
 // place: the key it stands at, to be one that such an asset belongs to, or NULL. False after a report.
 bool ty_recipe_read(ty_loader* loader, ty_node* node, const char* place, ty_recipe* recipe);
+// The frames that it makes will have that channel; false after a report.
+bool ty_recipe_bring_channel(ty_loader* loader, ty_recipe* recipe, const ty_node* channel);
 char* ty_recipe_text(const ty_recipe* recipe); // a complete recipe file; caller frees
 // Runs the generator and writes what it makes, with its recipe and hash: a .glb, a .ply, or frames by a pattern.
 // TY_NOT_AT_REST when that is complete but not at rest.
@@ -234,10 +236,10 @@ int ty_texture_index(ty_loader* loader, const ty_texture_def* def, ty_place plac
 // asset_load.c: files to memory (everything named when only checking, else what objects use)
 void ty_load_textures(ty_loader* loader);
 void ty_load_assets(ty_loader* loader);
-// scene_textures.c: textures of materials. Indices are the same for equal ones, -1 after a report. is_data: numbers,
-// not colours.
-int ty_surface_texture_of_asset(ty_loader* loader, int asset, const ty_node* name, bool is_data);
-int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data,
+// scene_textures.c: textures of materials. Indices are the same for equal ones, -1 after a report. layer: the channel
+// that alone counts, NULL = the picture; is_data: numbers, not colours.
+int ty_surface_texture_of_asset(ty_loader* loader, int asset, const ty_node* name, const ty_node* layer, bool is_data);
+int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, const ty_node* layer, bool is_data,
                                const int wrap[2]); // along u and v, -1 = not said
 void ty_load_surface_textures(ty_loader* loader);  // after the assets: recipes make frames
 void ty_set_texture_times(ty_loader* loader);      // to the scene's seconds

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tables of objects and assets.
 #include "scene_params.h"
+#include <string.h>
 
 static void object_default(void* def)
 {
@@ -32,6 +33,12 @@ static void frames_default(void* def)
     ty_mip_texture_def texture = ty_mip_texture_def_default();
     *(ty_frames_asset_def*)def = (ty_frames_asset_def){.wrap = (int)texture.wrap[0],
                                                        .sequence = {.fps = texture.fps, .last_frame = texture.last}};
+}
+
+static void loop_default(void* def)
+{
+    frames_default(def);
+    ((ty_frames_asset_def*)def)->sequence.loop = true;
 }
 
 static void aggregate_default(void* def)
@@ -109,10 +116,15 @@ static const char* const interpolations[] = {"none", "linear", NULL};
     {                                                                                                                  \
 #field, kind, unit, low, high, names, NULL, offsetof(type, sequence.field), text, false                        \
     }
+#define FPS_ROW(type)                                                                                                  \
+    SEQUENCE_ROW(type, fps, TY_PARAM_FLOAT, "1/s", 0.001, 100000, NULL, "frames a second of the scene's time")
+#define START_ROW(type)                                                                                                \
+    SEQUENCE_ROW(type, start, TY_PARAM_FLOAT, "s", -1e6, 1e6, NULL,                                                    \
+                 "when the first frame is shown; 0 = the timeline's start")
+#define INTERPOLATE_ROW(type)                                                                                          \
+    SEQUENCE_ROW(type, interpolate, TY_PARAM_ENUM, "", 0, 0, interpolations, "between one frame and the next")
 #define SEQUENCE_ROWS(type)                                                                                            \
-    SEQUENCE_ROW(type, fps, TY_PARAM_FLOAT, "1/s", 0.001, 100000, NULL, "frames a second of the scene's time"),        \
-        SEQUENCE_ROW(type, start, TY_PARAM_FLOAT, "s", -1e6, 1e6, NULL,                                                \
-                     "when the first frame is shown; 0 = the timeline's start"),                                       \
+    FPS_ROW(type), START_ROW(type),                                                                                    \
         SEQUENCE_ROW(type, first_frame, TY_PARAM_INT, "", -999999999, 999999999, NULL,                                 \
                      "number of the first, with last_frame"),                                                          \
         SEQUENCE_ROW(type, last_frame, TY_PARAM_INT, "", -999999999, 999999999, NULL,                                  \
@@ -121,17 +133,44 @@ static const char* const interpolations[] = {"none", "linear", NULL};
         SEQUENCE_ROW(type, mirror, TY_PARAM_BOOL, "", 0, 0, NULL, "back and forth"),                                   \
         SEQUENCE_ROW(type, hold, TY_PARAM_BOOL, "", 0, 0, NULL,                                                        \
                      "the first before, the last after; none of the three: an error")
-#define INTERPOLATED_ROWS(type)                                                                                        \
-    SEQUENCE_ROWS(type),                                                                                               \
-        SEQUENCE_ROW(type, interpolate, TY_PARAM_ENUM, "", 0, 0, interpolations, "between one frame and the next")
+#define INTERPOLATED_ROWS(type) SEQUENCE_ROWS(type), INTERPOLATE_ROW(type)
+
+#define PICTURES_ROWS(key, text)                                                                                       \
+    {key, TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_frames_asset_def, frames), text, true},                     \
+        {"color_space",                                                                                                \
+         TY_PARAM_STRING,                                                                                              \
+         "",                                                                                                           \
+         0,                                                                                                            \
+         0,                                                                                                            \
+         NULL,                                                                                                         \
+         NULL,                                                                                                         \
+         offsetof(ty_frames_asset_def, color_space),                                                                   \
+         "of the images; if not given: what they say or guessed for colours, raw for numbers",                         \
+         false},                                                                                                       \
+    {                                                                                                                  \
+        "wrap", TY_PARAM_ENUM, "", 0, 0, wraps, NULL, offsetof(ty_frames_asset_def, wrap), "outside 0..1", false       \
+    }
 
 static const ty_param frames_rows[] = {
-    {"frames", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_frames_asset_def, frames),
-     "image files, #### for the number (fill.####.exr); or a recipe (file or in place)", true},
-    {"color_space", TY_PARAM_STRING, "", 0, 0, NULL, NULL, offsetof(ty_frames_asset_def, color_space),
-     "of the images; if not given: guessed for colours, raw for numbers", false},
-    {"wrap", TY_PARAM_ENUM, "", 0, 0, wraps, NULL, offsetof(ty_frames_asset_def, wrap), "outside 0..1", false},
+    PICTURES_ROWS("frames", "image files, #### for the number (fill.####.exr); or a recipe (file or in place)"),
     INTERPOLATED_ROWS(ty_frames_asset_def),
+};
+
+static const ty_param fill_rows[] = {
+    PICTURES_ROWS("fill", "a recipe of kind fill (file or in place)"),
+    INTERPOLATED_ROWS(ty_frames_asset_def),
+};
+
+static const ty_param filter_rows[] = {
+    PICTURES_ROWS("filter", "a recipe of kind filter (file or in place)"),
+    INTERPOLATED_ROWS(ty_frames_asset_def),
+};
+
+static const ty_param loop_rows[] = {
+    PICTURES_ROWS("loop", "a recipe of kind loop (file or in place); its first frame follows its last"),
+    FPS_ROW(ty_frames_asset_def),
+    START_ROW(ty_frames_asset_def),
+    INTERPOLATE_ROW(ty_frames_asset_def),
 };
 
 static const ty_param mesh_rows[] = {
@@ -180,12 +219,16 @@ static const ty_param_table gltf_table = {"asset.gltf",
 static const ty_param_table texture_table = {
     "asset.texture", "An image for inputs of materials.", sizeof(ty_texture_asset_def), texture_default,
     texture_rows,    TY_PARAM_COUNT(texture_rows)};
-static const ty_param_table frames_table = {"asset.frames",
-                                            "A sequence of images for inputs of materials.",
-                                            sizeof(ty_frames_asset_def),
-                                            frames_default,
-                                            frames_rows,
-                                            TY_PARAM_COUNT(frames_rows)};
+#define FRAMES_TABLE(name, text, defaults, rows)                                                                       \
+    {                                                                                                                  \
+        name, text, sizeof(ty_frames_asset_def), defaults, rows, TY_PARAM_COUNT(rows)                                  \
+    }
+static const ty_param_table frames_tables[] = {
+    FRAMES_TABLE("asset.frames", "A sequence of images for inputs of materials.", frames_default, frames_rows),
+    FRAMES_TABLE("asset.fill", "The frames of a fill for inputs of materials.", frames_default, fill_rows),
+    FRAMES_TABLE("asset.loop", "The frames of a loop for inputs of materials.", loop_default, loop_rows),
+    FRAMES_TABLE("asset.filter", "The frames of a filter for inputs of materials.", frames_default, filter_rows),
+};
 static const ty_param_table aggregate_table = {
     "asset.aggregate", "Many instances of a few meshes.", sizeof(ty_aggregate_asset_def), aggregate_default,
     aggregate_rows,    TY_PARAM_COUNT(aggregate_rows)};
@@ -210,9 +253,12 @@ const ty_param_table* ty_texture_asset_params(void)
     return &texture_table;
 }
 
-const ty_param_table* ty_frames_asset_params(void)
+const ty_param_table* ty_frames_asset_params(const char* key)
 {
-    return &frames_table;
+    int i = 0;
+    while (strcmp(frames_tables[i].params[0].name, key) != 0)
+        ++i;
+    return &frames_tables[i];
 }
 
 const ty_param_table* ty_aggregate_asset_params(void)

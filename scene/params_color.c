@@ -138,10 +138,11 @@ static bool read_input_source(ty_reader* reader, ty_node* node, const ty_param* 
     if (texture)
     {
         int wrap[2] = {-1, -1};
-        if (!ty_param_read_mapping(reader, node, out, wrap))
+        const ty_node* layer = NULL;
+        if (!ty_param_read_mapping(reader, node, out, wrap, &layer))
             return false;
         out->texture = texture->text;
-        out->texture_index = reader->find_texture(reader->context, texture, row->type != TY_PARAM_COLOR_INPUT,
+        out->texture_index = reader->find_texture(reader->context, texture, layer, row->type != TY_PARAM_COLOR_INPUT,
                                                   out->mapping == TY_MAPPING_UV, wrap);
         if (out->texture_index < 0 || !attribute)
             return out->texture_index >= 0;

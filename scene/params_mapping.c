@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the texture of an input lies on the surface, and which of its channels counts.
 #include "params_read.h"
+#include <string.h>
 
 static const char* const mappings[] = {"uv", "triplanar", NULL};
 static const char* const wraps[] = {"repeat", "clamp", "mirror", NULL};
@@ -46,7 +47,6 @@ static const ty_param_table placement_table = {.name = "uv",
 
 static const ty_param rows[] = {
     {.name = "mapping", .type = TY_PARAM_ENUM, .unit = "", .choices = mappings, .offset = offsetof(ty_input, mapping)},
-    {.name = "channel", .type = TY_PARAM_ENUM, .unit = "", .choices = channels, .offset = offsetof(ty_input, channel)},
     {.name = "size",
      .type = TY_PARAM_FLOAT,
      .unit = "m",
@@ -71,16 +71,36 @@ static bool read_wrap(ty_reader* reader, ty_node* said, int wrap[2])
     return good && (!two || ty_param_read(reader, said->items[1], &row, &wrap[1]));
 }
 
-bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* input, int wrap[2])
+// One of the picture's own, or a further one of the file, by its name.
+static bool read_channel(ty_reader* reader, ty_node* said, ty_input* input, const ty_node** layer)
+{
+    static const ty_param row = {.name = "channel", .type = TY_PARAM_STRING, .unit = ""};
+    const char* name;
+    if (!ty_param_read(reader, said, &row, &name))
+        return false;
+    for (int i = 0; channels[i]; ++i)
+        if (strcmp(channels[i], name) == 0)
+        {
+            input->channel = i;
+            return true;
+        }
+    *layer = said;
+    return true;
+}
+
+bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* input, int wrap[2], const ty_node** layer)
 {
     bool good = true;
+    ty_node* channel = ty_node_get(node, "channel");
+    if (channel)
+        good = read_channel(reader, channel, input, layer);
     for (int i = 0; i < TY_PARAM_COUNT(rows); ++i)
     {
         ty_node* value = ty_node_get(node, rows[i].name);
         if (!value)
             continue;
         good &= ty_param_read(reader, value, &rows[i], (char*)input + rows[i].offset);
-        if (i > 1 && input->mapping != TY_MAPPING_TRIPLANAR)
+        if (i > 0 && input->mapping != TY_MAPPING_TRIPLANAR)
         {
             ty_report(reader->errors, value->place, TY_BAD_INPUT, "'%s' means nothing without 'mapping: triplanar'",
                       rows[i].name);

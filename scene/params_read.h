@@ -15,8 +15,10 @@ typedef struct ty_reader
     const ty_color* color; // NULL: colours are taken as ACEScg (the configuration could not be loaded)
     // What a texture or attribute of an input refers to; index or -1 after a report. NULL where inputs cannot have
     // them.
-    // is_data: numbers, not colours; by_uv: needs texture coordinates
-    int (*find_texture)(void* context, ty_node* name, bool is_data, bool by_uv, const int wrap[2]);
+    // layer: the name of a channel that alone counts, NULL = the picture; is_data: numbers, not colours; by_uv: needs
+    // texture coordinates
+    int (*find_texture)(void* context, ty_node* name, const ty_node* layer, bool is_data, bool by_uv,
+                        const int wrap[2]);
     int (*find_attribute)(void* context, const ty_node* name);
     void* context;
 } ty_reader;
@@ -35,8 +37,8 @@ bool ty_param_read_number(ty_reader* reader, const ty_node* node, const ty_param
 // The numbers of a list of exactly count; false after a report.
 bool ty_param_read_numbers(ty_reader* reader, const ty_node* node, const ty_param* row, float* out, int count);
 bool ty_param_read_rgb(ty_reader* reader, ty_node* node, const ty_param* row, ty_rgb* out);
-// mapping, uv, channel, size and blend of an input that has a texture.
-bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* input, int wrap[2]);
+// mapping, uv, channel, size and blend of an input that has a texture; *layer: a channel that is none of the picture's.
+bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* input, int wrap[2], const ty_node** layer);
 bool ty_param_read_input(ty_reader* reader, ty_node* node, const ty_param* row, ty_input* out);
 // Reports every key of a mapping that is not among keys (NULL-terminated); of = what the mapping is.
 bool ty_params_check_keys(ty_reader* reader, const ty_node* map, const char* const* keys, const char* of);

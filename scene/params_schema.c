@@ -63,8 +63,9 @@ static void add_input(ty_text* out, const ty_param* row)
     static const char mapping[] =
         ", \"uv\": {\"type\": \"object\", \"properties\": {\"scale\": {}, \"offset\": {}, \"rotate\": {}}, "
         "\"additionalProperties\": false}, \"mapping\": {\"enum\": [\"uv\", \"triplanar\"]}, \"size\": {\"type\": "
-        "\"number\"}, \"blend\": {\"type\": \"number\"}, \"channel\": {\"enum\": [\"all\", \"r\", \"g\", \"b\", "
-        "\"a\", \"luminance\"]}, \"wrap\": {\"anyOf\": [{\"enum\": [\"repeat\", \"clamp\", \"mirror\"]}, {\"type\": "
+        "\"number\"}, \"blend\": {\"type\": \"number\"}, \"channel\": {\"type\": \"string\", "
+        "\"examples\": [\"all\", \"r\", \"g\", \"b\", \"a\", \"luminance\", \"v\"]}, \"wrap\": {\"anyOf\": [{\"enum\": "
+        "[\"repeat\", \"clamp\", \"mirror\"]}, {\"type\": "
         "\"array\", \"minItems\": 2, \"maxItems\": 2, \"items\": {\"enum\": [\"repeat\", \"clamp\", \"mirror\"]}}]}, "
         "\"attribute\": "
         "{\"type\": \"string\"}";
@@ -210,7 +211,7 @@ static void add_further_type(ty_text* out, const ty_param_table* table, const ty
     if (strncmp(table->name, "asset.", 6) != 0 || row->type != TY_PARAM_PATH)
         return;
     for (int i = 0; i < count; ++i)
-        if (strcmp(ty_recipe_place(generators[i]), row->name) == 0)
+        if (ty_recipe_belongs(generators[i], row->name))
             ty_text_format(out, ", {\"$ref\": \"#/$defs/%s\"}", generators[i]->params->name);
 }
 
@@ -296,7 +297,8 @@ char* ty_params_schema(void)
     ty_text_format(&out,
                    "    \"assets\": {\"type\": \"object\", \"additionalProperties\": {\"anyOf\": [{\"$ref\": "
                    "\"#/$defs/asset.mesh\"}, {\"$ref\": \"#/$defs/%s\"}, {\"$ref\": \"#/$defs/asset.texture\"}, "
-                   "{\"$ref\": \"#/$defs/asset.frames\"}, {\"$ref\": "
+                   "{\"$ref\": \"#/$defs/asset.frames\"}, {\"$ref\": \"#/$defs/asset.fill\"}, {\"$ref\": "
+                   "\"#/$defs/asset.loop\"}, {\"$ref\": \"#/$defs/asset.filter\"}, {\"$ref\": "
                    "\"#/$defs/asset.aggregate\"}, {\"$ref\": \"#/$defs/asset.gltf\"}]}},\n",
                    ty_shape_params()->name);
     ty_text_add(&out, "    \"materials\": {\"type\": \"object\", \"additionalProperties\": {\"anyOf\": [{\"$ref\": "

@@ -40,7 +40,10 @@ const ty_param_table* const* ty_scene_tables(int* count)
     add(&list, ty_mesh_asset_params());
     add(&list, ty_shape_params());
     add(&list, ty_texture_asset_params());
-    add(&list, ty_frames_asset_params());
+    add(&list, ty_frames_asset_params("frames"));
+    add(&list, ty_frames_asset_params("fill"));
+    add(&list, ty_frames_asset_params("loop"));
+    add(&list, ty_frames_asset_params("filter"));
     add(&list, ty_aggregate_asset_params());
     add(&list, ty_gltf_asset_params());
     add(&list, ty_surface_params());

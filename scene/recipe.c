@@ -11,20 +11,20 @@
 
 #define MOST_STATE ((size_t)4 << 30) // bytes of a file that frames go on from
 
-// Where a recipe may stand in an asset, by what it makes.
-static const char* const places[] = {"aggregate", "mesh", "frames"};
+// Where a recipe may stand in an asset, by what it makes; and the kinds whose frames have a place of their own.
+static const char* const places[] = {"aggregate", "mesh", "frames", "fill", "loop", "filter"};
 
 bool ty_recipe_is_place(const char* key)
 {
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < TY_PARAM_COUNT(places); ++i)
         if (strcmp(places[i], key) == 0)
             return true;
     return false;
 }
 
-const char* ty_recipe_place(const ty_generator* generator)
+bool ty_recipe_belongs(const ty_generator* generator, const char* place)
 {
-    return places[generator->product];
+    return strcmp(places[generator->product], place) == 0 || strcmp(generator->kind, place) == 0;
 }
 
 bool ty_recipe_is_file(const ty_node* node)
@@ -118,11 +118,64 @@ bool ty_recipe_read(ty_loader* loader, ty_node* node, const char* place, ty_reci
 {
     if (!read_recipe(loader, node, recipe))
         return false;
-    const char* product = ty_recipe_place(recipe->generator);
-    if (!place || strcmp(product, place) == 0)
+    if (!place || ty_recipe_belongs(recipe->generator, place))
         return true;
-    ty_report(loader->errors, ty_node_get(node, "kind")->place, TY_BAD_INPUT,
-              "'%s': a recipe of kind '%s' makes what is named by '%s'", place, recipe->generator->kind, product);
+    if (ty_generator_find(place))
+        ty_report(loader->errors, ty_node_get(node, "kind")->place, TY_BAD_INPUT,
+                  "'%s': expected a recipe of kind '%s', got one of kind '%s'", place, place, recipe->generator->kind);
+    else
+        ty_report(loader->errors, ty_node_get(node, "kind")->place, TY_BAD_INPUT,
+                  "'%s': a recipe of kind '%s' makes what is named by '%s'", place, recipe->generator->kind,
+                  places[recipe->generator->product]);
+    return false;
+}
+
+static bool lists(const ty_node* list, const char* text)
+{
+    for (int i = 0; i < list->count; ++i)
+        if (strcmp(list->items[i]->text, text) == 0)
+            return true;
+    return false;
+}
+
+// It goes into the recipe itself, so that the key of what is made, and the recipe of a picture, tell of it.
+static void add_output(ty_loader* loader, ty_recipe* recipe, const char* output)
+{
+    const ty_param_table* table = recipe->generator->params;
+    ty_node* list = ty_node_get(recipe->node, "outputs");
+    if (list && list->kind == TY_NODE_LIST && lists(list, output))
+        return;
+    ty_node* name = ty_node_create(&loader->tree, TY_NODE_SCALAR, recipe->node->place);
+    if (!list && name && (list = ty_node_create(&loader->tree, TY_NODE_LIST, recipe->node->place)))
+        ty_node_add(&loader->tree, recipe->node, (ty_key){"outputs", recipe->node->place}, list);
+    if (!name || !list || list->kind != TY_NODE_LIST)
+        return; // too large a tree, or wrong and reported
+    name->text = output;
+    ty_node_append(&loader->tree, list, name);
+    for (int i = 0; i < table->count; ++i)
+        if (strcmp(table->params[i].name, "outputs") == 0)
+            (void)ty_param_read(&loader->reader, list, &table->params[i], (char*)recipe->def + table->params[i].offset);
+}
+
+bool ty_recipe_bring_channel(ty_loader* loader, ty_recipe* recipe, const ty_node* channel)
+{
+    ty_frame_channel channels[TY_FRAME_CHANNELS];
+    const char* names[TY_FRAME_CHANNELS];
+    char nearest[TY_NEAREST_SIZE];
+    int count = recipe->generator->channels ? recipe->generator->channels(recipe->def, channels) : 0;
+    for (int i = 0; i < count; ++i)
+    {
+        names[i] = channels[i].name;
+        if (strcmp(names[i], channel->text) == 0)
+        {
+            add_output(loader, recipe, channels[i].output);
+            return true;
+        }
+    }
+    ty_report(
+        loader->errors, channel->place, TY_BAD_INPUT,
+        "'channel': all, r, g, b, a, luminance, or one of what a recipe of kind '%s' makes; it makes no '%.100s'%s",
+        recipe->generator->kind, channel->text, ty_nearest(channel->text, names, count, nearest));
     return false;
 }
 

@@ -5,7 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char* const kinds[] = {"mesh", "shape", "texture", "frames", "aggregate", "gltf", NULL};
+// A key `loop` belongs to other kinds as well: it counts as one where it holds a recipe.
+static const char* const kinds[] = {"mesh",   "shape",     "texture", "frames", "fill",
+                                    "filter", "aggregate", "gltf",    "loop",   NULL};
+
+#define KINDS "mesh, shape, texture, frames, fill, loop, filter, aggregate, gltf"
 
 int ty_texture_index(ty_loader* loader, const ty_texture_def* def, ty_place place)
 {
@@ -66,17 +70,26 @@ static void read_texture(ty_loader* loader, ty_node* node, ty_asset* asset)
     asset->path = asset->texture_def.texture;
 }
 
-static void read_frames(ty_loader* loader, ty_node* node, ty_asset* asset)
+static void read_frames(ty_loader* loader, ty_node* node, const char* key, ty_asset* asset)
 {
-    static const char* const skip[] = {"frames", NULL};
+    const char* const skip[] = {key, NULL};
+    char described[80];
     ty_frames_asset_def* def = &asset->frames_def;
-    ty_node* value = ty_node_get(node, "frames");
-    bool good = ty_params_read(&loader->reader, node, ty_frames_asset_params(), def, skip);
+    ty_node* value = ty_node_get(node, key);
+    bool good = ty_params_read(&loader->reader, node, ty_frames_asset_params(key), def, skip);
     ty_sequence_check(loader, &def->sequence, node->place);
     if (value->kind == TY_NODE_MAP)
     {
-        if (ty_recipe_read(loader, value, "frames", &asset->recipe) && good)
+        if (ty_recipe_read(loader, value, key, &asset->recipe) && good)
             asset->kind = TY_ASSET_RECIPE;
+        return;
+    }
+    if (strcmp(key, "frames") != 0)
+    {
+        if (!value->bad)
+            ty_report(loader->errors, value->place, TY_BAD_INPUT,
+                      "'%s': expected a recipe of kind '%s' (a .yaml file, or in place), got %s", key, key,
+                      ty_node_describe(value, described));
         return;
     }
     asset->path = ty_files_use_frames(&loader->files, value, "frames");
@@ -142,6 +155,12 @@ static void read_gltf(ty_loader* loader, ty_node* node, ty_asset* asset)
         asset->kind = TY_ASSET_GLTF;
 }
 
+static bool has_kind(const ty_node* node, const char* kind)
+{
+    const ty_node* value = ty_node_get(node, kind);
+    return value && (strcmp(kind, "loop") != 0 || value->kind == TY_NODE_MAP || ty_recipe_is_file(value));
+}
+
 static void read_asset(ty_loader* loader, ty_node* node, ty_asset* asset)
 {
     char described[80], nearest[TY_NEAREST_SIZE];
@@ -150,20 +169,19 @@ static void read_asset(ty_loader* loader, ty_node* node, ty_asset* asset)
         return;
     if (node->kind != TY_NODE_MAP)
     {
-        ty_report(
-            loader->errors, node->place, TY_BAD_INPUT,
-            "asset '%.100s': expected a mapping with one of: mesh, shape, texture, frames, aggregate, gltf, got %s",
-            asset->name, ty_node_describe(node, described));
+        ty_report(loader->errors, node->place, TY_BAD_INPUT,
+                  "asset '%.100s': expected a mapping with one of: " KINDS ", got %s", asset->name,
+                  ty_node_describe(node, described));
         return;
     }
     for (int i = 0; kinds[i]; ++i)
-        if (!kind && ty_node_find(node, kinds[i]) >= 0)
+        if (!kind && has_kind(node, kinds[i]))
             kind = kinds[i];
     if (!kind)
     {
-        ty_report(loader->errors, node->place, TY_BAD_INPUT,
-                  "asset '%.100s': expected one of the keys mesh, shape, texture, frames, aggregate, gltf%s",
-                  asset->name, node->count ? ty_nearest(node->keys[0].text, kinds, 6, nearest) : "");
+        ty_report(loader->errors, node->place, TY_BAD_INPUT, "asset '%.100s': expected one of the keys " KINDS "%s",
+                  asset->name,
+                  node->count ? ty_nearest(node->keys[0].text, kinds, TY_PARAM_COUNT(kinds) - 1, nearest) : "");
         return;
     }
     asset->place = ty_node_get(node, kind)->place;
@@ -173,12 +191,12 @@ static void read_asset(ty_loader* loader, ty_node* node, ty_asset* asset)
         read_shape(loader, node, asset);
     else if (strcmp(kind, "texture") == 0)
         read_texture(loader, node, asset);
-    else if (strcmp(kind, "frames") == 0)
-        read_frames(loader, node, asset);
     else if (strcmp(kind, "aggregate") == 0)
         read_aggregate(loader, node, asset);
-    else
+    else if (strcmp(kind, "gltf") == 0)
         read_gltf(loader, node, asset);
+    else
+        read_frames(loader, node, kind, asset);
 }
 
 static void resolve_prototype(ty_loader* loader, ty_asset* asset, const ty_node* node)

@@ -17,7 +17,7 @@ enum
 };
 
 // An asset of that name, else a file; a name without a dot or slash can only be meant as an asset.
-static int find_texture(void* context, ty_node* name, bool is_data, bool by_uv, const int wrap[2])
+static int find_texture(void* context, ty_node* name, const ty_node* layer, bool is_data, bool by_uv, const int wrap[2])
 {
     ty_loader* loader = context;
     loader->textured[loader->current_material] |= by_uv;
@@ -29,8 +29,8 @@ static int find_texture(void* context, ty_node* name, bool is_data, bool by_uv, 
         ty_report(loader->errors, name->place, TY_BAD_INPUT, "'wrap' belongs to the asset '%.200s'", name->text);
         return -1;
     }
-    return index >= 0 ? ty_surface_texture_of_asset(loader, index, name, is_data)
-                      : ty_surface_texture_of_file(loader, name, is_data, wrap);
+    return index >= 0 ? ty_surface_texture_of_asset(loader, index, name, layer, is_data)
+                      : ty_surface_texture_of_file(loader, name, layer, is_data, wrap);
 }
 
 static int find_attribute(void* context, const ty_node* name)

@@ -70,7 +70,7 @@ const ty_param_table* ty_object_params(void);
 const ty_param_table* ty_gltf_asset_params(void);
 const ty_param_table* ty_mesh_asset_params(void);
 const ty_param_table* ty_texture_asset_params(void);
-const ty_param_table* ty_frames_asset_params(void);
+const ty_param_table* ty_frames_asset_params(const char* key); // frames, fill, loop, filter
 const ty_param_table* ty_aggregate_asset_params(void);
 
 // Whether a key of the light table means anything for a kind of light.

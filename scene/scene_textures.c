@@ -13,7 +13,7 @@ static bool same_texture(const ty_surface_texture* a, const ty_surface_texture* 
 {
     const ty_mip_texture_def *x = &a->def, *y = &b->def;
     return a->asset == b->asset && same_text(x->path, y->path) && same_text(x->color_space, y->color_space) &&
-           x->wrap[0] == y->wrap[0] && x->wrap[1] == y->wrap[1];
+           same_text(x->channel, y->channel) && x->wrap[0] == y->wrap[0] && x->wrap[1] == y->wrap[1];
 }
 
 static int index_of(ty_loader* loader, const ty_surface_texture* texture)
@@ -56,7 +56,16 @@ void ty_sequence_check(ty_loader* loader, const ty_sequence_def* sequence, ty_pl
         ty_report(loader->errors, place, TY_BAD_INPUT, "only one of 'loop', 'mirror' and 'hold'");
 }
 
-int ty_surface_texture_of_asset(ty_loader* loader, int asset_index, const ty_node* name, bool is_data)
+static void take_layer(ty_surface_texture* texture, const ty_node* layer)
+{
+    if (!layer)
+        return;
+    texture->def.channel = layer->text;
+    texture->place = layer->place;
+}
+
+int ty_surface_texture_of_asset(ty_loader* loader, int asset_index, const ty_node* name, const ty_node* layer,
+                                bool is_data)
 {
     ty_asset* asset = &loader->assets[asset_index];
     ty_surface_texture texture = {.def = ty_mip_texture_def_default(), .place = asset->place, .asset = -1};
@@ -82,15 +91,19 @@ int ty_surface_texture_of_asset(ty_loader* loader, int asset_index, const ty_nod
         ty_report(loader->errors, name->place, TY_BAD_INPUT, "'texture': asset '%.200s' is no texture", asset->name);
         return -1;
     }
+    if (made && layer && !ty_recipe_bring_channel(loader, &asset->recipe, layer))
+        return -1;
+    take_layer(&texture, layer);
     asset->used = asset->is_texture = true;
     return index_of(loader, &texture);
 }
 
-int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, bool is_data, const int wrap[2])
+int ty_surface_texture_of_file(ty_loader* loader, ty_node* name, const ty_node* layer, bool is_data, const int wrap[2])
 {
     ty_surface_texture texture = {.def = ty_mip_texture_def_default(), .place = name->place, .asset = -1};
     texture.def.color_space = space_for(NULL, is_data);
     texture.def.path = ty_files_use(&loader->files, name, "texture");
+    take_layer(&texture, layer);
     for (int i = 0; i < 2 && wrap[i] >= 0; ++i)
         texture.def.wrap[i] = (ty_wrap)wrap[i];
     return texture.def.path ? index_of(loader, &texture) : -1;
@@ -151,7 +164,7 @@ void ty_load_surface_textures(ty_loader* loader)
     for (int i = 0; i < loader->asset_count && loader->options->check_only; ++i)
         if (!loader->assets[i].is_texture &&
             (loader->assets[i].kind == TY_ASSET_TEXTURE || loader->assets[i].kind == TY_ASSET_FRAMES))
-            (void)ty_surface_texture_of_asset(loader, i, loader->asset_map->items[i], false);
+            (void)ty_surface_texture_of_asset(loader, i, loader->asset_map->items[i], NULL, false);
     scene->surface_textures = TY_ARENA_ALLOC(loader->arena, ty_mip_texture*, scene->surface_texture_count);
     if (scene->surface_texture_count == 0 || !create_cache(loader))
         return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parameter tables of a living pattern's recipe and their defaults.
 #include "fill_tables.h"
+#include <stdio.h>
 
 ty_fill_recipe ty_fill_recipe_default(void)
 {
@@ -148,6 +149,43 @@ const ty_param_table* ty_fill_recipe_params(void)
     return &ty_fill_recipe_table;
 }
 
+void fill_matte_name(const char* mark, int number, char name[64])
+{
+    if (mark)
+        snprintf(name, 64, "matte.%.56s", mark);
+    else
+        snprintf(name, 64, "matte.%d", number);
+}
+
+bool fill_has_closed_cells(const ty_fill_recipe* recipe)
+{
+    const ty_fill_event* events = recipe->events.items;
+    bool any = recipe->region.mask != NULL;
+    for (int i = 0; i < recipe->events.count; i++)
+        any = any || events[i].op == TY_FILL_BARRIER;
+    return any;
+}
+
+static int channels(const void* def, ty_frame_channel out[TY_FRAME_CHANNELS])
+{
+    static const char* const planes[] = {"u", "v", "mark", "trail", "distance"};
+    const ty_fill_recipe* recipe = def;
+    const ty_fill_mark* marks = recipe->marks.items;
+    int count = 0;
+    for (; count < (int)(sizeof planes / sizeof *planes); count++)
+    {
+        snprintf(out[count].name, sizeof out->name, "%s", planes[count]);
+        out[count].output = planes[count];
+    }
+    for (int i = 0; i < TY_GRAY_SCOTT_MARKS && (i == 0 || i < recipe->marks.count); i++)
+        fill_matte_name(recipe->marks.count > 0 ? marks[i].name : NULL, i, out[count++].name);
+    if (fill_has_closed_cells(recipe))
+        fill_matte_name("closed", 0, out[count++].name);
+    for (int i = (int)(sizeof planes / sizeof *planes); i < count; i++)
+        out[i].output = "mattes";
+    return count;
+}
+
 static int frame_count(const void* def)
 {
     const ty_fill_recipe* recipe = def;
@@ -165,5 +203,6 @@ const ty_generator ty_fill_generator = {
     .product = TY_PRODUCT_FRAMES,
     .params = &ty_fill_recipe_table,
     .frame_count = frame_count,
+    .channels = channels,
     .make = make,
 };

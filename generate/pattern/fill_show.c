@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A frame of a fill as an image: colours through mattes, and the channels that were asked for.
 #include "fill_show.h"
-#include <stdio.h>
+#include "fill_tables.h"
 #include <string.h>
 #include <tsuya/base/memory.h>
 
@@ -12,18 +12,9 @@ static bool is_grey(ty_rgb c)
     return c.r == c.g && c.g == c.b;
 }
 
-static bool closes(const fill_run* run)
-{
-    const ty_fill_event* events = run->recipe->events.items;
-    bool any = run->region.path != NULL;
-    for (int i = 0; i < run->recipe->events.count; i++)
-        any = any || events[i].op == TY_FILL_BARRIER;
-    return any;
-}
-
 static bool all_grey(const fill_run* run)
 {
-    bool grey = !run->over.path && (!closes(run) || is_grey(run->recipe->outside));
+    bool grey = !run->over.path && (!fill_has_closed_cells(run->recipe) || is_grey(run->recipe->outside));
     for (int i = 0; i < run->mark_count; i++)
         grey = grey && is_grey(run->marks[i].color) && is_grey(run->marks[i].ground) && !run->images[i][0].path &&
                !run->images[i][1].path;
@@ -84,13 +75,9 @@ static void channels_add(fill_show_state* show, ty_exr* image)
     for (int k = 0; k < FILL_LAYERS && run->outputs.mattes; k++)
     {
         char name[64];
-        const char* mark = k < run->mark_count ? run->marks[k].name : NULL;
-        if (k == FILL_CLOSED ? !closes(run) : k >= run->mark_count)
+        if (k == FILL_CLOSED ? !fill_has_closed_cells(run->recipe) : k >= run->mark_count)
             continue;
-        if (k == FILL_CLOSED || mark)
-            snprintf(name, sizeof name, "matte.%.56s", mark ? mark : "closed");
-        else
-            snprintf(name, sizeof name, "matte.%d", k);
+        fill_matte_name(k == FILL_CLOSED ? "closed" : run->marks[k].name, k, name);
         show->mattes[k] = ty_exr_add_channel(image, name, TY_EXR_FLOAT);
     }
 }

@@ -91,20 +91,25 @@ ty_oiio_result ty_oiio_open(const char* format, const char* path, ty_oiio_input*
                            });
 }
 
-ty_oiio_result ty_oiio_read(ty_oiio_input* input, float* pixels, char* text, size_t text_size)
+ty_oiio_result ty_oiio_read(ty_oiio_input* input, int begin, int end, float* pixels, char* text, size_t text_size)
 {
     return ty_oiio_guarded(text, text_size,
                            [&]
                            {
                                OIIO::ImageInput& file = *input->file;
-                               const int channels = file.spec().nchannels;
                                // A JPEG that ends early reads as grey with a warning that stands only in the error
                                // text.
-                               const bool good = file.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, pixels);
+                               const bool good = file.read_image(0, 0, begin, end, OIIO::TypeDesc::FLOAT, pixels);
                                if (!good || file.has_error())
                                    return ty_oiio_fail(text, text_size, file.geterror());
                                return TY_OIIO_OK;
                            });
+}
+
+const char* ty_oiio_channel_name(const ty_oiio_input* input, int channel)
+{
+    const std::vector<std::string>& names = input->file->spec().channelnames;
+    return size_t(channel) < names.size() ? names[size_t(channel)].c_str() : "";
 }
 
 void ty_oiio_close(ty_oiio_input* input)

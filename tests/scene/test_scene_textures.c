@@ -179,7 +179,7 @@ static void mappings_are_read(void** state)
     fixture_must_load(MATERIAL("{ texture: ./a.png, mapping: triplanar, size: 0.2, blend: 1, channel: luminance }"));
     fixture_one_error(MATERIAL("{ texture: ./a.png, size: 0.2 }"), 3, 62, "nothing without 'mapping: triplanar'");
     fixture_one_error(MATERIAL("{ texture: ./a.png, mapping: triplaner }"), 3, 65, "did you mean 'triplanar'");
-    fixture_one_error(MATERIAL("{ texture: ./a.png, channel: x }"), 3, 65, "'channel'");
+    fixture_one_error(MATERIAL("{ texture: ./a.png, channel: x }"), 3, 65, "no channel 'x'; the file has R, G, B");
     fixture_one_error(MATERIAL("{ texture: ./a.png, uv: { scal: 2 } }"), 3, 62, "did you mean 'scale'");
     fixture_one_error(MATERIAL("{ attribute: tint, channel: r }"), 3, 55, "unknown key 'channel' in an attribute");
     fixture_one_error(MATERIAL("{ attribute: tint, ofset: 1 }"), 3, 55, "did you mean 'offset'");

@@ -44,14 +44,27 @@ typedef struct ty_made
         state; // given where the making of an aggregate or of frames goes on from one that is kept; else NULL
 } ty_made;
 
+enum
+{
+    TY_FRAME_CHANNELS = 32,
+};
+
+// Of frames, besides the picture's own.
+typedef struct ty_frame_channel
+{
+    char name[64];
+    const char* output; // which of the recipe's `outputs` brings it
+} ty_frame_channel;
+
 // A kind of recipe. The def struct is described by params; scene/ fills it from YAML.
 typedef struct ty_generator
 {
     const char* kind;     // the recipe's `kind:`, e.g. "aggregate"
     const char* build_id; // changes when the same recipe would give another result
     ty_product product;
-    const ty_param_table* params;        // of the whole recipe
-    int (*frame_count)(const void* def); // of a sequence, at least 1; else NULL
+    const ty_param_table* params;                                              // of the whole recipe
+    int (*frame_count)(const void* def);                                       // of a sequence, at least 1; else NULL
+    int (*channels)(const void* def, ty_frame_channel out[TY_FRAME_CHANNELS]); // how many there can be; NULL: none
     // Deterministic for any worker count. On failure *out is as before. Cancelled: TY_INTERRUPTED.
     // TY_NOT_AT_REST still gives an aggregate (the best state, its metrics say so).
     ty_status (*make)(const void* def, ty_workers* workers, ty_made* out, ty_error* error);

@@ -18,6 +18,10 @@ void ty_image_term(ty_image* image);
 // memory is taken. Alpha as stored.
 TY_CHECKED ty_status ty_image_read(const char* path, ty_image* out, ty_error* error);
 
+// Only the channel of that name ("v", "matte.moss"); NULL: only the picture, which is R, G, B and A, or Y and A, where
+// there are such, else the first four channels. TY_BAD_INPUT where there is no such channel; the message names all.
+TY_CHECKED ty_status ty_image_read_channel(const char* path, const char* channel, ty_image* out, ty_error* error);
+
 // What the header says, after the same checks; no pixels are decoded.
 TY_CHECKED ty_status ty_image_read_size(const char* path, int* width, int* height, ty_error* error);
 

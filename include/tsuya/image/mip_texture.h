@@ -49,6 +49,7 @@ typedef struct ty_mip_texture_def
 {
     const char* path;        // a file, or a pattern ("fill.####.exr"); borrowed during create
     const char* color_space; // NULL = guess, "raw" = numbers, untouched
+    const char* channel;     // the only one that counts, as grey numbers, untouched ("v"); NULL = the picture
     ty_wrap wrap[2];         // outside 0..1 along u, and along v
     // Sequences: frame `first` is shown from `start` seconds on, each for 1 / fps seconds.
     int first, last; // numbers of frames, all of which must be there; last < first: those that are there
