@@ -37,7 +37,7 @@ static ty_status descriptor_read(int fd, const char* path, ty_bytes* bytes, size
     return TY_OK;
 }
 
-static ty_status open_read(int fd, const char* path, size_t max_size, ty_bytes* out, ty_error* error)
+static ty_status open_size(int fd, const char* path, size_t* out, ty_error* error)
 {
     struct stat info;
     if (fstat(fd, &info) != 0)
@@ -46,14 +46,22 @@ static ty_status open_read(int fd, const char* path, size_t max_size, ty_bytes* 
         return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "is a folder, not a file");
     if (!S_ISREG(info.st_mode))
         return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "is not a regular file");
-    if ((uint64_t)info.st_size > max_size)
-        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "has %lld bytes; at most %zu are read",
-                               (long long)info.st_size, max_size);
-    size_t size = (size_t)info.st_size;
+    *out = (size_t)info.st_size;
+    return TY_OK;
+}
+
+static ty_status open_read(int fd, const char* path, size_t max_size, ty_bytes* out, ty_error* error)
+{
+    size_t size;
+    ty_status status = open_size(fd, path, &size, error);
+    if (status != TY_OK)
+        return status;
+    if (size > max_size)
+        return ty_error_set_at(error, TY_BAD_FILE, path, 0, 0, "has %zu bytes; at most %zu are read", size, max_size);
     ty_bytes bytes = {ty_try_alloc(size + 1, 1), 0};
     if (!bytes.data)
         return ty_error_set_at(error, TY_NO_MEMORY, path, 0, 0, "no memory for its %zu bytes", size);
-    ty_status status = descriptor_read(fd, path, &bytes, size, error);
+    status = descriptor_read(fd, path, &bytes, size, error);
     if (status)
         ty_bytes_term(&bytes);
     else
@@ -61,14 +69,32 @@ static ty_status open_read(int fd, const char* path, size_t max_size, ty_bytes* 
     return status;
 }
 
+// Without O_NONBLOCK a named pipe would wait for a writer.
+static ty_status open_file(const char* path, int* fd, ty_error* error)
+{
+    *fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    return *fd < 0 ? fail_errno(error, path, "cannot open") : TY_OK;
+}
+
 ty_status ty_file_read(const char* path, size_t max_size, ty_bytes* out, ty_error* error)
 {
+    int fd;
     *out = (ty_bytes){0};
-    // Without O_NONBLOCK a named pipe would wait for a writer.
-    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (fd < 0)
-        return fail_errno(error, path, "cannot open");
-    ty_status status = open_read(fd, path, max_size, out, error);
+    ty_status status = open_file(path, &fd, error);
+    if (status != TY_OK)
+        return status;
+    status = open_read(fd, path, max_size, out, error);
+    close(fd);
+    return status;
+}
+
+ty_status ty_file_size(const char* path, size_t* out, ty_error* error)
+{
+    int fd;
+    ty_status status = open_file(path, &fd, error);
+    if (status != TY_OK)
+        return status;
+    status = open_size(fd, path, out, error);
     close(fd);
     return status;
 }

@@ -24,11 +24,15 @@ static void report_print(const json_t* report)
         printf(", %d colours", (int)number(report, "colors"));
     if (number(report, "outside") > 0.0)
         printf("\noutside  %.1f %% of the pixels lie beside the volume", 100.0 * number(report, "outside"));
+    if (number(report, "start") > 0.0)
+        printf("\nstart    frame 1 is at %.4f of the path", number(report, "start"));
     printf("\ninside   %.2f %% of the pixels (%.2f..%.2f)\n", 100.0 * number(mean, "density"),
            100.0 * number(report, "density_least"), 100.0 * number(report, "density_most"));
     printf("change   %.2f %% of the pixels a frame, at most %.2f %%; at the seam %.2f %%\n",
            100.0 * number(mean, "changed"), 100.0 * number(report, "changed_most"),
            100.0 * number(report, "changed_at_seam"));
+    if (number(report, "changed_at_seam") > number(report, "changed_most"))
+        printf("         the seam changes more than any other step: quiet_start puts it where the least changes\n");
     printf("speed    changes from a frame to the next by at most %.2f %%; at the seam by %.2f %%\n",
            100.0 * number(report, "speed_jump_most"), 100.0 * number(report, "speed_jump_at_seam"));
     printf("overlap  %.2f %%, Jaccard %.3f, kappa %.3f, means of all steps\n", 100.0 * number(mean, "overlap"),

@@ -179,6 +179,16 @@ static ty_status run_make(making* m, const ty_bytes* state, ty_error* error)
     return kept != TY_OK ? kept : status;
 }
 
+ty_status ty_fill_size(const ty_fill_recipe* recipe, int size[2], ty_error* error)
+{
+    fill_run run = {0};
+    ty_status status = fill_run_init(&run, recipe, NULL, error);
+    size[0] = run.width * recipe->scale;
+    size[1] = run.height * recipe->scale;
+    fill_run_term(&run);
+    return status;
+}
+
 ty_status ty_fill_make(const void* def, ty_workers* workers, const ty_frame_sink* sink, ty_error* error)
 {
     return ty_fill_make_from(def, workers, sink, NULL, error);

@@ -97,15 +97,6 @@ static ty_status resample(resampling* r, const int size[3], ty_workers* workers,
 
 // --- builders ---
 
-static void voxel_copy(ty_loop_volume* v, size_t to, size_t from)
-{
-    v->values[to] = v->values[from];
-    if (v->labels)
-        v->labels[to] = v->labels[from];
-    if (v->tints)
-        memcpy(v->tints + 3 * to, v->tints + 3 * from, 3);
-}
-
 // The half of positive numbers over the other one; y goes up, its index down.
 static void mirror(ty_loop_volume* v, int kind)
 {
@@ -120,7 +111,7 @@ static void mirror(ty_loop_volume* v, int kind)
                     continue;
                 size_t to = ty_loop_voxel(v, x, y, z);
                 at[k] = n - 1 - at[k];
-                voxel_copy(v, to, ty_loop_voxel(v, at[0], at[1], at[2]));
+                ty_loop_volume_copy(v, to, ty_loop_voxel(v, at[0], at[1], at[2]), 1);
             }
 }
 
@@ -143,6 +134,11 @@ static void turn_back(ty_vec3 angles, double out[9])
     }
 }
 
+static bool is_turned(const ty_loop_part* part)
+{
+    return part->rotate.x != 0.0f || part->rotate.y != 0.0f || part->rotate.z != 0.0f;
+}
+
 // size: what the part is brought to, NULL = it keeps its own.
 static ty_status part_make(const ty_loop_part* part, int index, const int* size, ty_workers* workers,
                            ty_loop_volume* out, ty_error* error)
@@ -157,9 +153,8 @@ static ty_status part_make(const ty_loop_part* part, int index, const int* size,
         status = resample(&twist, out->size, workers, out, error);
     resampling rotation = {0};
     turn_back(part->rotate, rotation.turn);
-    bool turned = part->rotate.x != 0.0f || part->rotate.y != 0.0f || part->rotate.z != 0.0f;
     bool other = size && memcmp(size, out->size, sizeof out->size) != 0;
-    if (status == TY_OK && (turned || other))
+    if (status == TY_OK && (is_turned(part) || other))
         status = resample(&rotation, size ? size : out->size, workers, out, error);
     if (status != TY_OK)
         ty_loop_volume_term(out);
@@ -187,9 +182,6 @@ static ty_status palette_merge(ty_loop_palette* into, const ty_loop_palette* fro
 static ty_status unite(ty_loop_volume* into, const ty_loop_volume* from, int index, ty_error* error)
 {
     uint8_t as[TY_LOOP_COLORS] = {0};
-    if (!into->labels != !from->labels || !into->tints != !from->tints)
-        return ty_error_set(error, TY_BAD_INPUT,
-                            "volume[%d].colors: all parts have colours of one mix, or none has any", index);
     ty_status status = palette_merge(&into->palette, &from->palette, index, as, error);
     for (size_t i = 0; i < into->count && status == TY_OK; i++)
     {
@@ -206,12 +198,36 @@ static ty_status unite(ty_loop_volume* into, const ty_loop_volume* from, int ind
     return status;
 }
 
+ty_status ty_loop_volume_check(const ty_loop_recipe* recipe, ty_loop_volume* shape, ty_error* error)
+{
+    const ty_loop_part* parts = recipe->volume.items;
+    *shape = (ty_loop_volume){0};
+    if (recipe->volume.count < 1)
+        return ty_error_set(error, TY_BAD_INPUT, "volume: it has no part; at least 1");
+    for (int i = 0; i < recipe->volume.count; i++)
+    {
+        int size[3];
+        ty_status status = ty_loop_source_check(&parts[i], i, size, error);
+        if (status != TY_OK)
+            return status;
+        if (i == 0)
+            memcpy(shape->size, size, sizeof size);
+        bool colored = ty_loop_part_is_colored(&parts[i]);
+        if (colored != ty_loop_part_is_colored(&parts[0]) || (colored && parts[i].mix != parts[0].mix))
+            return ty_error_set(error, TY_BAD_INPUT,
+                                "volume[%d].colors: all parts have colours of one mix, or none has any", i);
+        bool kept = parts[i].twist == 0.0f && !is_turned(&parts[i]) && memcmp(size, shape->size, sizeof size) == 0;
+        bool wraps = kept && (parts[i].wraps || parts[i].source == TY_LOOP_REACTION);
+        for (int k = 0; k < 2; k++)
+            shape->wrap[k] = wraps && (i == 0 || shape->wrap[k]);
+    }
+    return TY_OK;
+}
+
 ty_status ty_loop_volume_make(const ty_loop_recipe* recipe, ty_workers* workers, ty_loop_volume* out, ty_error* error)
 {
     const ty_loop_part* parts = recipe->volume.items;
     *out = (ty_loop_volume){0};
-    if (recipe->volume.count < 1)
-        return ty_error_set(error, TY_BAD_INPUT, "volume: it has no part; at least 1");
     ty_status status = part_make(&parts[0], 0, NULL, workers, out, error);
     for (int i = 1; i < recipe->volume.count && status == TY_OK; i++)
     {

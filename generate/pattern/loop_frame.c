@@ -20,13 +20,15 @@ struct ty_loop_painter
     ty_loop_sample_fn* sample;
     int width, height;
     ty_rgb low, high;
+    bool clear;                             // what is outside is transparent
     ty_rgb colors[TY_LOOP_COLORS];          // of the palette
     ty_rgb red[256], green[256], blue[256]; // of tints: a colour is the sum of three
     float *values, *coverage;               // [height][width]
     // Of the present moment:
     ty_loop_grid grid;
     float share;        // of the frame
-    float* channels[3]; // only the first of Y
+    float* channels[3]; // only the first of Y; none: nobody sees them
+    float* alpha;       // NULL = all is opaque
 };
 
 // --- colours ---
@@ -176,6 +178,10 @@ static void rows_paint(void* context, int64_t begin, int64_t end, int worker)
         row_cover(p, y, covers);
         for (int x = 0; x < p->width; x++)
             coverage[x] += p->share * covers[x];
+        if (!p->channels[0])
+            continue;
+        if (p->alpha)
+            memcpy(p->alpha + (size_t)y * (size_t)p->width, coverage, (size_t)p->width * sizeof *coverage);
         if (p->volume->labels || p->volume->tints)
             row_paint_colors(p, y, covers);
         else
@@ -207,6 +213,9 @@ ty_status ty_loop_painter_create(const ty_loop_recipe* recipe, const ty_loop_vol
         status = ty_error_set(error, TY_NO_MEMORY, "no memory for %d x %d pixels", p->width, p->height);
     if (status == TY_OK && (volume->labels || volume->tints))
         status = inks_mix(p, error);
+    p->clear = recipe->clear || volume->palette.clear;
+    if (p->clear)
+        p->low = (ty_rgb){0.0f, 0.0f, 0.0f};
     if (status == TY_OK)
         *out = p;
     else
@@ -238,18 +247,19 @@ static ty_exr* image_make(ty_loop_painter* p)
                 p->high.r == p->high.g && p->high.g == p->high.b;
     for (int c = 0; c < 3; c++)
         p->channels[c] = grey && c > 0 ? NULL : ty_exr_add_channel(image, grey ? "Y" : names[c], TY_EXR_HALF);
+    p->alpha = p->clear ? ty_exr_add_channel(image, "A", TY_EXR_HALF) : NULL;
     if (!grey)
         ty_exr_add_chromaticities(image, ap1);
     return image;
 }
 
-ty_status ty_loop_painter_paint(ty_loop_painter* p, int i, ty_exr** out, ty_error* error)
+// The moments of frame i, into coverage and channels.
+static ty_status moments_add(ty_loop_painter* p, int i, ty_error* error)
 {
     const ty_loop_recipe* recipe = p->recipe;
     int open = (int)(recipe->blur * (float)SHUTTER + 0.5f), moments = open > 0 ? recipe->blur_samples : 1;
     int64_t parts = (int64_t)moments * SHUTTER, n = parts * recipe->frames;
     ty_status status = TY_OK;
-    ty_exr* image = image_make(p);
     memset(p->coverage, 0, (size_t)p->width * (size_t)p->height * sizeof *p->coverage);
     p->share = 1.0f / (float)moments;
     for (int m = 0; m < moments && status == TY_OK; m++)
@@ -259,8 +269,21 @@ ty_status ty_loop_painter_paint(ty_loop_painter* p, int i, ty_exr** out, ty_erro
         if (status == TY_OK && !ty_parallel_for(p->workers, p->height, 16, rows_paint, p))
             status = ty_error_set(error, TY_INTERRUPTED, "interrupted while a frame was made");
     }
+    return status;
+}
+
+ty_status ty_loop_painter_paint(ty_loop_painter* p, int i, ty_exr** out, ty_error* error)
+{
+    ty_exr* image = image_make(p);
+    ty_status status = moments_add(p, i, error);
     if (status != TY_OK)
         ty_exr_destroy(image);
     *out = status == TY_OK ? image : NULL;
     return status;
+}
+
+ty_status ty_loop_painter_cover(ty_loop_painter* p, int i, ty_error* error)
+{
+    memset(p->channels, 0, sizeof p->channels);
+    return moments_add(p, i, error);
 }

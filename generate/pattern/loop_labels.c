@@ -297,16 +297,33 @@ static bool palette_make(uint32_t* codes, int n, uint32_t background, int colors
     return true;
 }
 
-static uint8_t label_of(const ty_loop_palette* palette, uint32_t code)
+// The nearest colour of the palette for each cell of out, by nearest pixels. One that follows itself is not sought
+// again.
+static void labels_find(const uint32_t* codes, int w, int h, ty_loop_labels* out)
 {
-    uint8_t colors[MOST][3], c[3] = {(uint8_t)(code >> 16), (uint8_t)(code >> 8), (uint8_t)code};
-    if (code & TRANSPARENT)
-        return TY_LOOP_BACKGROUND;
+    const ty_loop_palette* palette = &out->palette;
+    uint8_t colors[MOST][3], *label = out->labels, last_label = TY_LOOP_BACKGROUND;
+    uint32_t last = TRANSPARENT;
     memcpy(colors, palette->colors, sizeof palette->colors);
     if (!palette->clear)
         memcpy(colors[palette->count], palette->background, 3);
-    int k = nearest((const uint8_t(*)[3])colors, palette->count + !palette->clear, c);
-    return k == palette->count ? TY_LOOP_BACKGROUND : (uint8_t)k;
+    for (int y = 0; y < out->height; y++)
+        for (int x = 0; x < out->width; x++)
+        {
+            int64_t from_x = ((int64_t)2 * x + 1) * w / (2 * (int64_t)out->width);
+            int64_t from_y = ((int64_t)2 * y + 1) * h / (2 * (int64_t)out->height);
+            uint32_t code = codes[from_y * w + from_x];
+            const uint8_t c[3] = {(uint8_t)(code >> 16), (uint8_t)(code >> 8), (uint8_t)code};
+            if (code & TRANSPARENT)
+                last_label = TY_LOOP_BACKGROUND;
+            else if (code != last)
+            {
+                int k = nearest((const uint8_t(*)[3])colors, palette->count + !palette->clear, c);
+                last_label = k == palette->count ? TY_LOOP_BACKGROUND : (uint8_t)k;
+            }
+            last = code;
+            *label++ = last_label;
+        }
 }
 
 ty_status ty_loop_labels_read(const char* path, const char* key, int colors, const int cells[2],
@@ -328,16 +345,26 @@ ty_status ty_loop_labels_read(const char* path, const char* key, int colors, con
     if (!out->labels ||
         (!given && !palette_make(codes, w * h, background_of(codes, w, h), colors ? colors : 1, &out->palette)))
         status = ty_error_set(error, TY_NO_MEMORY, "%s: no memory for %d x %d cells", key, out->width, out->height);
-    for (int y = 0; y < out->height && status == TY_OK; y++)
-        for (int x = 0; x < out->width; x++)
-        {
-            int64_t from_x = ((int64_t)2 * x + 1) * w / (2 * (int64_t)out->width);
-            int64_t from_y = ((int64_t)2 * y + 1) * h / (2 * (int64_t)out->height);
-            out->labels[(size_t)y * (size_t)out->width + (size_t)x] =
-                label_of(&out->palette, codes[from_y * w + from_x]);
-        }
+    if (status == TY_OK)
+        labels_find(codes, w, h, out);
     ty_free(codes);
     if (status != TY_OK)
         ty_loop_labels_term(out);
     return status;
+}
+
+void ty_loop_labels_put(const ty_loop_labels* labels, int z, ty_loop_volume* v)
+{
+    const uint8_t* label = labels->labels;
+    for (int y = 0; y < v->size[1]; y++)
+        for (int x = 0; x < v->size[0]; x++, label++)
+        {
+            size_t at = ty_loop_voxel(v, x, y, z);
+            bool inside = *label != TY_LOOP_BACKGROUND;
+            v->values[at] = inside ? (uint16_t)TY_LOOP_ONE : 0;
+            if (v->labels)
+                v->labels[at] = inside ? *label : 0;
+            if (v->tints && inside)
+                memcpy(v->tints + 3 * at, v->palette.colors[*label], 3);
+        }
 }

@@ -24,6 +24,27 @@ static ty_status volume_check(const ty_loop_recipe* recipe, const ty_loop_volume
     return TY_OK;
 }
 
+// The frame of the path that is the loop's first.
+static ty_status start_find(const ty_loop_recipe* recipe, const ty_loop_volume* volume, ty_loop_painter* painter,
+                            int* out, ty_error* error)
+{
+    ty_loop_report* changes;
+    *out = (int)(recipe->start * (float)recipe->frames + 0.5f) % recipe->frames;
+    if (!recipe->quiet_start)
+        return TY_OK;
+    ty_status status = ty_loop_report_create(recipe, volume, &changes, error);
+    for (int i = 0; i < recipe->frames && status == TY_OK; i++)
+    {
+        status = ty_loop_painter_cover(painter, i, error);
+        if (status == TY_OK)
+            ty_loop_report_add(changes, ty_loop_painter_coverage(painter));
+    }
+    if (status == TY_OK)
+        *out = ty_loop_report_quietest(changes);
+    ty_loop_report_destroy(changes);
+    return status;
+}
+
 static ty_status frames_make(const ty_loop_recipe* recipe, const ty_loop_volume* volume, ty_workers* workers,
                              const ty_frame_sink* sink, char** report, ty_error* error)
 {
@@ -32,12 +53,15 @@ static ty_status frames_make(const ty_loop_recipe* recipe, const ty_loop_volume*
     ty_status status = ty_loop_report_create(recipe, volume, &counts, error);
     if (status == TY_OK)
         status = ty_loop_painter_create(recipe, volume, workers, &painter, error);
+    int first = 0;
+    if (status == TY_OK)
+        status = start_find(recipe, volume, painter, &first, error);
     ty_progress progress;
     ty_progress_begin(&progress, "loop");
     for (int i = 0; i < recipe->frames && status == TY_OK; i++)
     {
         ty_exr* image = NULL;
-        status = ty_loop_painter_paint(painter, i, &image, error);
+        status = ty_loop_painter_paint(painter, (first + i) % recipe->frames, &image, error);
         if (status == TY_OK)
         {
             ty_loop_report_add(counts, ty_loop_painter_coverage(painter));
@@ -49,7 +73,7 @@ static ty_status frames_make(const ty_loop_recipe* recipe, const ty_loop_volume*
     ty_progress_end(&progress);
     if (status == TY_OK)
     {
-        char* text = ty_loop_report_end(counts);
+        char* text = ty_loop_report_end(counts, first);
         if (report)
             *report = text;
         else
@@ -67,12 +91,14 @@ ty_status ty_loop_make(const void* def, ty_workers* workers, const ty_frame_sink
     if ((int64_t)recipe->size[0] * recipe->size[1] > MOST_PIXELS)
         return ty_error_set(error, TY_BAD_INPUT, "size: %d x %d pixels; at most %d in all", recipe->size[0],
                             recipe->size[1], MOST_PIXELS);
-    ty_status status = ty_loop_volume_make(recipe, workers, &volume, error);
+    ty_status status = ty_loop_volume_check(recipe, &volume, error);
+    if (status == TY_OK)
+        status = ty_loop_motion_check(recipe, &volume, error);
+    if (status == TY_OK)
+        status = ty_loop_volume_make(recipe, workers, &volume, error);
     if (status != TY_OK)
         return status;
     status = volume_check(recipe, &volume, error);
-    if (status == TY_OK)
-        status = ty_loop_motion_check(recipe, &volume, error);
     if (status == TY_OK)
         status = frames_make(recipe, &volume, workers, sink, report, error);
     ty_loop_volume_term(&volume);

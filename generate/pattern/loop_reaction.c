@@ -5,6 +5,7 @@
 #include <string.h>
 #include <tsuya/base/log.h>
 #include <tsuya/base/memory.h>
+#include <tsuya/image/image.h>
 
 enum
 {
@@ -93,13 +94,8 @@ static void rows_put(void* context, int64_t begin, int64_t end, int worker)
             if (volume->tints)
                 tint_of(r, first + x, volume->tints + 3 * (at + x));
         }
-        if (other == at)
-            continue;
-        memcpy(volume->values + other, volume->values + at, w * sizeof *volume->values);
-        if (volume->labels)
-            memcpy(volume->labels + other, volume->labels + at, w);
-        if (volume->tints)
-            memcpy(volume->tints + 3 * other, volume->tints + 3 * at, 3 * w);
+        if (other != at)
+            ty_loop_volume_copy(volume, other, at, w);
     }
 }
 
@@ -108,23 +104,6 @@ static bool slices_put(reaction* r, int first, int second)
     r->slices[0] = first;
     r->slices[1] = second;
     return ty_parallel_for(r->workers, r->height, 32, rows_put, r);
-}
-
-// The logo as it is: wholly inside or wholly outside, whatever v the reaction starts with.
-static void logo_put(const reaction* r, int z)
-{
-    ty_loop_volume* volume = r->volume;
-    for (int y = 0; y < r->height; y++)
-        for (int x = 0; x < r->width; x++)
-        {
-            uint8_t label = r->logo.labels[(size_t)y * (size_t)r->width + (size_t)x];
-            size_t at = ty_loop_voxel(volume, x, y, z);
-            volume->values[at] = label == TY_LOOP_BACKGROUND ? 0 : (uint16_t)TY_LOOP_ONE;
-            if (volume->labels)
-                volume->labels[at] = label == TY_LOOP_BACKGROUND ? 0 : label;
-            if (volume->tints && label != TY_LOOP_BACKGROUND)
-                memcpy(volume->tints + 3 * at, volume->palette.colors[label], 3);
-        }
 }
 
 // --- the run ---
@@ -156,7 +135,7 @@ static ty_status run_logo(reaction* r, ty_error* error)
             if (r->front)
                 r->front[(size_t)label * plane(r) + at] = 0.25f;
         }
-    logo_put(r, middle);
+    ty_loop_labels_put(&r->logo, middle, r->volume);
     for (int n = 1; n <= middle; n++)
     {
         if (!advance(r, r->part->reaction.every) || !slices_put(r, middle - n, middle + n))
@@ -187,18 +166,23 @@ static ty_status run_drops(reaction* r, ty_error* error)
     return TY_OK;
 }
 
-static ty_status field_make(reaction* r, ty_error* error)
+static ty_status field_create(const ty_loop_reaction* def, int width, int height, ty_gray_scott** out, ty_error* error)
 {
-    const ty_loop_reaction* def = &r->part->reaction;
     ty_gray_scott_def field = ty_gray_scott_def_default();
-    field.width = r->width;
-    field.height = r->height;
+    field.width = width;
+    field.height = height;
     field.diffusion_u = def->diffusion_u;
     field.diffusion_v = def->diffusion_v;
     field.time_step = def->time_step;
     field.wrap_x = field.wrap_y = true;
     field.rates[0] = (ty_gray_scott_rates){def->feed, def->kill};
-    ty_status status = ty_gray_scott_create(&field, &r->field, error);
+    return ty_gray_scott_create(&field, out, error);
+}
+
+static ty_status field_make(reaction* r, ty_error* error)
+{
+    const ty_loop_reaction* def = &r->part->reaction;
+    ty_status status = field_create(def, r->width, r->height, &r->field, error);
     r->color_count = r->volume->palette.count;
     if (status != TY_OK || !def->logo || (r->color_count < 2 && !r->volume->tints))
         return status;
@@ -214,14 +198,33 @@ static ty_status logo_read(reaction* r, int index, ty_error* error)
     const ty_loop_reaction* def = &r->part->reaction;
     char key[64];
     snprintf(key, sizeof key, "volume[%d].reaction.logo", index);
-    if (def->depth % 2 == 0)
+    ty_status status = ty_loop_labels_read(def->logo, key, r->part->colors, def->cells, NULL, &r->logo, error);
+    r->width = r->logo.width;
+    r->height = r->logo.height;
+    return status;
+}
+
+ty_status ty_loop_reaction_check(const ty_loop_part* part, int index, int size[3], ty_error* error)
+{
+    const ty_loop_reaction* def = &part->reaction;
+    ty_status status = TY_OK;
+    ty_gray_scott* field = NULL;
+    size[0] = size[1] = 256;
+    size[2] = def->depth;
+    if (def->logo && def->depth % 2 == 0)
         return ty_error_set(error, TY_BAD_INPUT,
                             "volume[%d].reaction.depth: %d; with a logo an odd number, so that it lies in the middle: "
                             "%d or %d",
                             index, def->depth, def->depth - 1, def->depth + 1);
-    ty_status status = ty_loop_labels_read(def->logo, key, r->part->colors, def->cells, NULL, &r->logo, error);
-    r->width = r->logo.width;
-    r->height = r->logo.height;
+    if (def->logo)
+        status = ty_image_read_size(def->logo, &size[0], &size[1], error);
+    for (int k = 0; k < 2; k++)
+        size[k] = def->cells[k] ? def->cells[k] : size[k];
+    if (status == TY_OK)
+        status = ty_loop_size_check(size, error);
+    if (status == TY_OK)
+        status = field_create(def, size[0], size[1], &field, error);
+    ty_gray_scott_destroy(field);
     return status;
 }
 
@@ -232,11 +235,10 @@ ty_status ty_loop_reaction_make(const ty_loop_part* part, int index, ty_workers*
     reaction r = {.part = part, .workers = workers, .volume = out};
     r.width = def->cells[0] ? def->cells[0] : 256;
     r.height = def->cells[1] ? def->cells[1] : 256;
-    bool given = part->range[0] != 0.0f || part->range[1] != 0.0f;
-    r.low = given ? part->range[0] : 0.0f;
-    r.scale = 1.0f / ((given ? part->range[1] : RANGE_HIGH) - r.low);
-    ty_status status = def->logo ? logo_read(&r, index, error) : TY_OK;
-    bool colored = def->logo && part->colors > 0;
+    ty_status status = ty_loop_range(part, index, RANGE_HIGH, &r.low, &r.scale, error);
+    if (status == TY_OK && def->logo)
+        status = logo_read(&r, index, error);
+    bool colored = ty_loop_part_is_colored(part);
     if (status == TY_OK)
         status = ty_loop_volume_create((const int[3]){r.width, r.height, def->depth}, colored,
                                        part->mix == TY_LOOP_MIX_BLEND, out, error);

@@ -233,6 +233,9 @@ static const ty_param recipe_rows[] = {
     GROUP("axis", &axis_table, axis, "what it turns about"),
     GROUP("motion", &motion_table, motion, "how it moves"),
     FIELD("frames", TY_PARAM_INT, "", 1, 100000, frames, "of the loop: the one after the last is the first"),
+    FIELD("start", TY_PARAM_FLOAT, "", 0, 1, start, "share of the path at which frame 1 is, to the nearest frame"),
+    FIELD("quiet_start", TY_PARAM_BOOL, "", 0, 0, quiet_start,
+          "instead the loop begins after the step that changes least, which becomes its seam"),
     FIELD("size", TY_PARAM_INT2, "px", 1, 16384, size, "of a frame"),
     CHOICE("sampling", samplings, sampling, "of voxels: hard edges, or edges that cover pixels by shares"),
     FIELD("show_values", TY_PARAM_BOOL, "", 0, 0, show_values, "values from low to high, instead of what is above iso"),
@@ -243,6 +246,8 @@ static const ty_param recipe_rows[] = {
           "of the pattern, for the warning of long steps; 0 = measured"),
     FIELD("low", TY_PARAM_RGB, "", 0, 100, low, "outside; a volume with colours has its own"),
     FIELD("high", TY_PARAM_RGB, "", 0, 100, high, "inside; grey ones give frames of the channel Y"),
+    FIELD("clear", TY_PARAM_BOOL, "", 0, 0, clear,
+          "what is outside is transparent; with colors it also is where a logo's background is"),
 };
 TABLE(recipe_table, "loop", "A looping texture: a rectangle moves through a volume on a closed path.", recipe_rows);
 #undef OWNER
@@ -264,7 +269,7 @@ static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_err
 
 const ty_generator ty_loop_generator = {
     .kind = "loop",
-    .build_id = "loop 1",
+    .build_id = "loop 2",
     .product = TY_PRODUCT_FRAMES,
     .params = &recipe_table,
     .frame_count = frame_count,

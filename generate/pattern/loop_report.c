@@ -206,7 +206,16 @@ static double outside_mean(const ty_loop_report* r)
     return sum / r->recipe->frames;
 }
 
-char* ty_loop_report_end(ty_loop_report* report)
+int ty_loop_report_quietest(const ty_loop_report* report)
+{
+    int n = report->count, least = n - 1;
+    for (int i = 0; i < n; i++)
+        if (report->pairs[i].changed < report->pairs[least].changed)
+            least = i;
+    return (least + 1) % n;
+}
+
+char* ty_loop_report_end(const ty_loop_report* report, int first)
 {
     const ty_loop_recipe* recipe = report->recipe;
     const int* size = report->volume->size;
@@ -223,7 +232,7 @@ char* ty_loop_report_end(ty_loop_report* report)
     add(&t, "{\"frames\": %d, \"volume\": [%d, %d, %d], ", recipe->frames, size[0], size[1], size[2]);
     add(&t, "\"colors\": %d, \"wavelength\": %.3f, \"step_most\": %.4f, \"frames_needed\": %d, ",
         report->volume->palette.count, wave, step, needed > 0 ? needed : recipe->frames);
-    add(&t, "\"outside\": %.6f, ", outside_mean(report));
+    add(&t, "\"outside\": %.6f, \"start\": %.6f, ", outside_mean(report), (double)first / recipe->frames);
     summary_add(&t, report);
     add(&t, "\"steps\": [");
     for (int i = 0; i < recipe->frames; i++)

@@ -12,8 +12,12 @@ void ty_loop_report_destroy(ty_loop_report* report); // NULL is allowed
 
 // Frames in order, as shares of pixels that are inside: [height][width].
 void ty_loop_report_add(ty_loop_report* report, const float* coverage);
-// After the last: a JSON object as text, the caller's. Warns of steps that are too long.
-char* ty_loop_report_end(ty_loop_report* report);
+// After the last: from which frame, from 0, the loop goes on after its least change; 0 where no change is less than
+// that back to frame 0.
+int ty_loop_report_quietest(const ty_loop_report* report);
+// After the last: a JSON object as text, the caller's. first: the frame of the path that was added first. Warns of
+// steps that are too long.
+char* ty_loop_report_end(const ty_loop_report* report, int first);
 
 // Two pictures of inside and outside, from counts of pixels.
 typedef struct ty_loop_pair

@@ -97,19 +97,7 @@ static ty_status slice_read_colors(const source* s, const char* path, const char
         return status;
     if (z == 0)
         v->palette = labels.palette;
-    for (int y = 0; y < v->size[1]; y++)
-        for (int x = 0; x < v->size[0]; x++)
-        {
-            uint8_t label = labels.labels[(size_t)y * (size_t)v->size[0] + (size_t)x];
-            size_t at = ty_loop_voxel(v, x, y, z);
-            if (label == TY_LOOP_BACKGROUND)
-                continue;
-            v->values[at] = (uint16_t)TY_LOOP_ONE;
-            if (v->labels)
-                v->labels[at] = label;
-            else
-                memcpy(v->tints + 3 * at, v->palette.colors[label], 3);
-        }
+    ty_loop_labels_put(&labels, z, v);
     ty_loop_labels_term(&labels);
     return TY_OK;
 }
@@ -146,26 +134,19 @@ static ty_status frames_find(const char* path, int* first, int* last, ty_error* 
     return TY_OK;
 }
 
-// The first slice once more in every one.
-static void slices_repeat(ty_loop_volume* v)
-{
-    for (size_t z = 1; z < (size_t)v->size[2]; z++)
-    {
-        memcpy(v->values + z * v->slice, v->values, v->slice * sizeof *v->values);
-        if (v->labels)
-            memcpy(v->labels + z * v->slice, v->labels, v->slice);
-        if (v->tints)
-            memcpy(v->tints + 3 * z * v->slice, v->tints, 3 * v->slice);
-    }
-}
-
-static ty_status pictures_make(const source* s, ty_error* error)
+typedef struct pictures
 {
     char key[64];
-    int first = 0, last = 0;
+    ty_plane_file file;
+    int first, last; // frames
+    int size[3];     // of the volume
+} pictures;
+
+static ty_status pictures_find(const source* s, pictures* out, ty_error* error)
+{
     const ty_loop_part* part = s->part;
     bool stack = part->source == TY_LOOP_STACK;
-    snprintf(key, sizeof key, "volume[%d].files", s->index);
+    snprintf(out->key, sizeof out->key, "volume[%d].files", s->index);
     if (!part->files)
         return missing(s, "files", "missing; the pictures of the volume", error);
     if (stack != ty_path_is_sequence(part->files))
@@ -173,34 +154,48 @@ static ty_status pictures_make(const source* s, ty_error* error)
                        stack ? "a stack is named with #### for the number of the slice"
                              : "a still is one picture, without #",
                        error);
-    ty_status status = frames_find(part->files, &first, &last, error);
-    ty_plane_file file;
+    ty_status status = frames_find(part->files, &out->first, &out->last, error);
+    int count = out->last - out->first + 1;
+    if (status == TY_OK && stack && count > TY_LOOP_DEPTH)
+        status = ty_error_set(error, TY_BAD_INPUT, "%s: %d slices; at most %d", out->key, count, TY_LOOP_DEPTH);
     if (status == TY_OK)
-        status = ty_plane_file_open(part->files, key, first, last, &file, error);
-    if (status != TY_OK)
-        return status;
-    int count = last - first + 1;
-    if (stack && count > TY_LOOP_DEPTH)
-        return ty_error_set(error, TY_BAD_INPUT, "%s: %d slices; at most %d", key, count, TY_LOOP_DEPTH);
-    int size[3] = {file.width, file.height, stack ? count : part->depth};
-    status = ty_loop_volume_create(size, part->colors > 0, part->mix == TY_LOOP_MIX_BLEND, s->volume, error);
+        status = ty_plane_file_open(part->files, out->key, out->first, out->last, &out->file, error);
+    out->size[0] = out->file.width;
+    out->size[1] = out->file.height;
+    out->size[2] = stack ? count : part->depth;
+    return status;
+}
+
+static ty_status pictures_make(const source* s, ty_error* error)
+{
+    pictures p = {0};
+    ty_loop_volume* v = s->volume;
+    ty_status status = pictures_find(s, &p, error);
+    if (status == TY_OK)
+        status = ty_loop_volume_create(p.size, s->part->colors > 0, s->part->mix == TY_LOOP_MIX_BLEND, v, error);
+    int count = p.last - p.first + 1;
     for (int i = 0; i < count && status == TY_OK; i++)
     {
-        status = slice_read(s, &file, first + i, i, error);
+        status = slice_read(s, &p.file, p.first + i, i, error);
         if (status == TY_OK && ty_cancel_requested())
             status = ty_error_set(error, TY_INTERRUPTED, "interrupted while pictures were read");
     }
-    if (status == TY_OK && !stack)
-        slices_repeat(s->volume);
+    for (int z = count; z < p.size[2] && status == TY_OK; z++) // of a still
+        ty_loop_volume_copy(v, ty_loop_voxel(v, 0, 0, z), ty_loop_voxel(v, 0, 0, 0), v->slice);
     return status;
 }
 
 // --- raw ---
 
+static size_t number_size(const ty_loop_raw* raw)
+{
+    return raw->type == TY_LOOP_U8 ? 1 : raw->type == TY_LOOP_U16 ? 2 : 4;
+}
+
 static float number_at(const ty_loop_raw* raw, const uint8_t* bytes, size_t i)
 {
     uint8_t b[4];
-    size_t size = raw->type == TY_LOOP_U8 ? 1 : raw->type == TY_LOOP_U16 ? 2 : 4;
+    size_t size = number_size(raw);
     for (size_t k = 0; k < size; k++) // little-endian, as our machines are
         b[k] = bytes[i * size + (raw->big_endian ? size - 1 - k : k)];
     uint32_t bits = b[0];
@@ -215,31 +210,51 @@ static float number_at(const ty_loop_raw* raw, const uint8_t* bytes, size_t i)
     return isfinite(value) ? value : 0.0f;
 }
 
-static ty_status raw_make(const source* s, ty_error* error)
+// Whether a file of so many bytes is the volume.
+static ty_status raw_check(const source* s, size_t bytes, ty_error* error)
 {
     const ty_loop_raw* raw = &s->part->raw;
+    size_t voxels = (size_t)raw->width * (size_t)raw->height * (size_t)raw->depth;
+    size_t want = voxels * number_size(raw) + (size_t)raw->header;
+    if (bytes == want)
+        return TY_OK;
+    return ty_error_set(error, TY_BAD_INPUT,
+                        "volume[%d].raw: '%s' has %zu bytes; %d x %d x %d numbers of %zu and a header of %d are %zu",
+                        s->index, raw->file, bytes, raw->width, raw->height, raw->depth, number_size(raw), raw->header,
+                        want);
+}
+
+static ty_status raw_find(const source* s, int size[3], ty_error* error)
+{
+    static const char* const sides[] = {"raw.width", "raw.height", "raw.depth"};
+    const ty_loop_raw* raw = &s->part->raw;
+    size_t bytes;
+    size[0] = raw->width;
+    size[1] = raw->height;
+    size[2] = raw->depth;
     if (!raw->file)
         return missing(s, "raw.file", "missing; the numbers of the volume", error);
-    const int size[3] = {raw->width, raw->height, raw->depth};
-    static const char* const sides[] = {"raw.width", "raw.height", "raw.depth"};
     for (int k = 0; k < 3; k++)
         if (size[k] < 1)
             return missing(s, sides[k], "the volume is empty; 1..2048 voxels", error);
-    size_t width = raw->type == TY_LOOP_U8 ? 1 : raw->type == TY_LOOP_U16 ? 2 : 4;
-    size_t voxels = (size_t)size[0] * (size_t)size[1] * (size_t)size[2], want = voxels * width + (size_t)raw->header;
-    ty_bytes bytes;
-    ty_status status = ty_file_read(raw->file, (size_t)64 << 30, &bytes, error);
-    if (status != TY_OK)
-        return status;
-    if (bytes.size != want)
-        status = ty_error_set(error, TY_BAD_INPUT,
-                              "volume[%d].raw: '%s' has %zu bytes; %d x %d x %d numbers of %zu and a header of %d are "
-                              "%zu",
-                              s->index, raw->file, bytes.size, size[0], size[1], size[2], width, raw->header, want);
+    ty_status status = ty_file_size(raw->file, &bytes, error);
+    return status == TY_OK ? raw_check(s, bytes, error) : status;
+}
+
+static ty_status raw_make(const source* s, ty_error* error)
+{
+    const ty_loop_raw* raw = &s->part->raw;
+    int size[3];
+    ty_bytes bytes = {0};
+    ty_status status = raw_find(s, size, error);
+    if (status == TY_OK)
+        status = ty_file_read(raw->file, (size_t)64 << 30, &bytes, error);
+    if (status == TY_OK)
+        status = raw_check(s, bytes.size, error); // it may have changed since
     if (status == TY_OK)
         status = ty_loop_volume_create(size, false, false, s->volume, error);
     size_t i = 0;
-    for (int z = 0; z < size[2] && status == TY_OK; z++)
+    for (int z = 0; status == TY_OK && z < size[2]; z++)
         for (int y = 0; y < size[1]; y++)
             for (int x = 0; x < size[0]; x++, i++)
                 s->volume->values[ty_loop_voxel(s->volume, x, y, z)] =
@@ -248,31 +263,59 @@ static ty_status raw_make(const source* s, ty_error* error)
     return status;
 }
 
-ty_status ty_loop_source_make(const ty_loop_part* part, int index, ty_workers* workers, ty_loop_volume* out,
-                              ty_error* error)
+// --- of any kind ---
+
+ty_status ty_loop_range(const ty_loop_part* part, int index, float high, float* low, float* scale, ty_error* error)
 {
     bool given = part->range[0] != 0.0f || part->range[1] != 0.0f;
-    *out = (ty_loop_volume){0};
     if (given && part->range[0] == part->range[1])
         return ty_error_set(error, TY_BAD_INPUT, "volume[%d].range: [%g, %g]; two different numbers", index,
                             (double)part->range[0], (double)part->range[1]);
-    float low = given ? part->range[0] : 0.0f, high = given ? part->range[1] : 1.0f;
-    source s = {part, index, low, 1.0f / (high - low), out};
-    ty_status status;
+    *low = given ? part->range[0] : 0.0f;
+    *scale = 1.0f / ((given ? part->range[1] : high) - *low);
+    return TY_OK;
+}
+
+ty_status ty_loop_source_check(const ty_loop_part* part, int index, int size[3], ty_error* error)
+{
+    source s = {.part = part, .index = index};
+    pictures p = {0};
+    ty_status status = ty_loop_range(part, index, 1.0f, &s.low, &s.scale, error);
+    if (status != TY_OK)
+        return status;
     switch ((ty_loop_source)part->source)
     {
     case TY_LOOP_REACTION:
-        return ty_loop_reaction_make(part, index, workers, out, error);
+        return ty_loop_reaction_check(part, index, size, error);
     case TY_LOOP_FILL:
-        status = fill_make(&s, workers, error);
+        status = ty_fill_size(&part->fill, size, error);
+        size[2] = ty_fill_generator.frame_count(&part->fill);
         break;
     case TY_LOOP_RAW:
-        status = raw_make(&s, error);
+        status = raw_find(&s, size, error);
         break;
     default:
-        status = pictures_make(&s, error);
+        status = pictures_find(&s, &p, error);
+        memcpy(size, p.size, sizeof p.size);
         break;
     }
+    return status == TY_OK ? ty_loop_size_check(size, error) : status;
+}
+
+ty_status ty_loop_source_make(const ty_loop_part* part, int index, ty_workers* workers, ty_loop_volume* out,
+                              ty_error* error)
+{
+    source s = {.part = part, .index = index, .volume = out};
+    *out = (ty_loop_volume){0};
+    if (part->source == TY_LOOP_REACTION)
+        return ty_loop_reaction_make(part, index, workers, out, error);
+    ty_status status = ty_loop_range(part, index, 1.0f, &s.low, &s.scale, error);
+    if (status == TY_OK && part->source == TY_LOOP_FILL)
+        status = fill_make(&s, workers, error);
+    else if (status == TY_OK && part->source == TY_LOOP_RAW)
+        status = raw_make(&s, error);
+    else if (status == TY_OK)
+        status = pictures_make(&s, error);
     out->wrap[0] = out->wrap[1] = part->wraps;
     if (status != TY_OK)
         ty_loop_volume_term(out);

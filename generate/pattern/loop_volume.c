@@ -5,19 +5,27 @@
 #include <tsuya/base/cpu.h>
 #include <tsuya/base/memory.h>
 
-ty_status ty_loop_volume_create(const int size[3], bool colored, bool blended, ty_loop_volume* out, ty_error* error)
+ty_status ty_loop_size_check(const int size[3], ty_error* error)
 {
-    *out = (ty_loop_volume){.row = (size_t)size[0] + 1};
-    memcpy(out->size, size, sizeof out->size);
     for (int k = 0; k < 3; k++)
         if (size[k] < 1 || size[k] > TY_LOOP_DEPTH)
             return ty_error_set(error, TY_BAD_INPUT, "volume: %d x %d x %d voxels; each side has 1..%d", size[0],
                                 size[1], size[2], TY_LOOP_DEPTH);
-    out->slice = out->row * ((size_t)size[1] + 1);
-    out->count = out->slice * ((size_t)size[2] + 1);
-    if (out->count > INT32_MAX) // indices of the kernels
+    if (((size_t)size[0] + 1) * ((size_t)size[1] + 1) * ((size_t)size[2] + 1) > INT32_MAX) // indices of the kernels
         return ty_error_set(error, TY_BAD_INPUT, "volume: %d x %d x %d voxels; at most 2147483647 in all", size[0],
                             size[1], size[2]);
+    return TY_OK;
+}
+
+ty_status ty_loop_volume_create(const int size[3], bool colored, bool blended, ty_loop_volume* out, ty_error* error)
+{
+    *out = (ty_loop_volume){.row = (size_t)size[0] + 1};
+    memcpy(out->size, size, sizeof out->size);
+    ty_status status = ty_loop_size_check(size, error);
+    if (status != TY_OK)
+        return status;
+    out->slice = out->row * ((size_t)size[1] + 1);
+    out->count = out->slice * ((size_t)size[2] + 1);
     out->values = TY_TRY_ALLOC(uint16_t, out->count);
     out->labels = colored && !blended ? TY_TRY_ALLOC(uint8_t, out->count) : NULL;
     out->tints = colored && blended ? TY_TRY_ALLOC(uint8_t, 3 * out->count) : NULL;
@@ -35,7 +43,7 @@ void ty_loop_volume_term(ty_loop_volume* volume)
     *volume = (ty_loop_volume){0};
 }
 
-static void copy(ty_loop_volume* volume, size_t to, size_t from, size_t count)
+void ty_loop_volume_copy(ty_loop_volume* volume, size_t to, size_t from, size_t count)
 {
     memcpy(volume->values + to, volume->values + from, count * sizeof *volume->values);
     if (volume->labels)
@@ -52,10 +60,13 @@ void ty_loop_volume_close(ty_loop_volume* volume)
     for (int z = 0; z < volume->size[2]; z++)
     {
         for (int y = 0; y < volume->size[1]; y++)
-            copy(volume, ty_loop_voxel(volume, volume->size[0], y, z), ty_loop_voxel(volume, from[0], y, z), 1);
-        copy(volume, ty_loop_voxel(volume, 0, volume->size[1], z), ty_loop_voxel(volume, 0, from[1], z), volume->row);
+            ty_loop_volume_copy(volume, ty_loop_voxel(volume, volume->size[0], y, z),
+                                ty_loop_voxel(volume, from[0], y, z), 1);
+        ty_loop_volume_copy(volume, ty_loop_voxel(volume, 0, volume->size[1], z), ty_loop_voxel(volume, 0, from[1], z),
+                            volume->row);
     }
-    copy(volume, ty_loop_voxel(volume, 0, 0, volume->size[2]), ty_loop_voxel(volume, 0, 0, from[2]), volume->slice);
+    ty_loop_volume_copy(volume, ty_loop_voxel(volume, 0, 0, volume->size[2]), ty_loop_voxel(volume, 0, 0, from[2]),
+                        volume->slice);
 }
 
 ty_loop_sample_fn* ty_loop_sampler(void)

@@ -31,9 +31,13 @@ typedef struct ty_loop_volume
 // Zeroes. colored: with room for labels or, blended, for tints.
 TY_CHECKED ty_status ty_loop_volume_create(const int size[3], bool colored, bool blended, ty_loop_volume* out,
                                            ty_error* error);
+// Whether there may be such a volume.
+TY_CHECKED ty_status ty_loop_size_check(const int size[3], ty_error* error);
 void ty_loop_volume_term(ty_loop_volume* volume); // a zeroed one is allowed
 // Writes the copies at the ends; after it nothing is written any more.
 void ty_loop_volume_close(ty_loop_volume* volume);
+// `count` voxels one after another, with their colours.
+void ty_loop_volume_copy(ty_loop_volume* volume, size_t to, size_t from, size_t count);
 
 static inline size_t ty_loop_voxel(const ty_loop_volume* volume, int x, int y, int z)
 {
@@ -73,15 +77,28 @@ void ty_loop_tint_of(const ty_loop_volume* volume, const ty_loop_corners* corner
 
 // --- making ---
 
+// The size of what volume_make will give and where it wraps, without voxels: all mistakes of the parts that can be
+// told before any work.
+TY_CHECKED ty_status ty_loop_volume_check(const ty_loop_recipe* recipe, ty_loop_volume* shape, ty_error* error);
 // All parts of a recipe: the first gives the size, others are laid with their middles on its middle.
 TY_CHECKED ty_status ty_loop_volume_make(const ty_loop_recipe* recipe, ty_workers* workers, ty_loop_volume* out,
                                          ty_error* error);
 
-// What the sources give, before any building. Closed by the caller.
+// What the sources give, before any building. Closed by the caller. check: its size alone.
+TY_CHECKED ty_status ty_loop_source_check(const ty_loop_part* part, int index, int size[3], ty_error* error);
 TY_CHECKED ty_status ty_loop_source_make(const ty_loop_part* part, int index, ty_workers* workers, ty_loop_volume* out,
                                          ty_error* error);
+TY_CHECKED ty_status ty_loop_reaction_check(const ty_loop_part* part, int index, int size[3], ty_error* error);
 TY_CHECKED ty_status ty_loop_reaction_make(const ty_loop_part* part, int index, ty_workers* workers,
                                            ty_loop_volume* out, ty_error* error);
+// What becomes 0, and one over the length of what becomes 0..1, by the part's range; without one it ends at `high`.
+TY_CHECKED ty_status ty_loop_range(const ty_loop_part* part, int index, float high, float* low, float* scale,
+                                   ty_error* error);
+static inline bool ty_loop_part_is_colored(const ty_loop_part* part)
+{
+    return part->colors > 0 && (part->source == TY_LOOP_STACK || part->source == TY_LOOP_STILL ||
+                                (part->source == TY_LOOP_REACTION && part->reaction.logo));
+}
 
 // One step of `colors` planes [height][width] that v is the sum of, which wrap as the field does; before the field's
 // own step. False when cancelled.
@@ -103,3 +120,5 @@ typedef struct ty_loop_labels
 TY_CHECKED ty_status ty_loop_labels_read(const char* path, const char* key, int colors, const int cells[2],
                                          const ty_loop_palette* given, ty_loop_labels* out, ty_error* error);
 void ty_loop_labels_term(ty_loop_labels* labels);
+// Slice z of a volume of that size and palette: wholly inside or wholly outside.
+void ty_loop_labels_put(const ty_loop_labels* labels, int z, ty_loop_volume* volume);

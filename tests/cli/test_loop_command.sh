@@ -117,3 +117,44 @@ Y
 expect 0 "$tsuya" render scene.yaml -o 'r.##.exr' --frames 1,4,7 --develop
 same r.01.png r.07.png
 cmp -s r.01.png r.04.png && fail "the texture of frame 4 is that of frame 1"
+
+# Mistakes come before any work: a million steps a slice would take hours.
+rm x.*.exr
+refuses "axis.direction: [0, 0, 0]; any length but zero" loop.yaml:9: --set axis.direction=[0,0,0] \
+    --set volume.0.reaction.every=1000000
+head -c 26 /dev/zero >small.raw
+printf 'tsuya: 1\nkind: loop\nvolume:\n  - source: raw\n    raw: { file: small.raw, width: 3, height: 3, depth: 3 }\n' >raw.yaml
+expect 3 "$tsuya" loop raw.yaml -o 'x.#.exr'
+says "has 26 bytes; 3 x 3 x 3 numbers of 1 and a header of 0 are 27"
+says "raw.yaml:5:"
+absent x.1.exr
+
+# Where frame 1 is: by a share of the path, or after the step of least change.
+expect 0 "$tsuya" loop loop.yaml -o 's.#.png' --set start=0.5
+prints "frame 1 is at 0.5000 of the path"
+same s.1.png t1.4.png
+same s.4.png t1.1.png
+expect 0 "$tsuya" loop loop.yaml -o 'q.#.png' --set quiet_start=true --json
+python3 - <<'P' || fail "the quiet start"
+import json
+r = json.load(open("out.txt"))
+assert r["changed_at_seam"] <= min(s["changed"] for s in r["steps"]), r
+P
+
+# Transparency: straight in PNG, kept by GIF.
+expect 0 "$tsuya" loop loop.yaml -o 'c.#.png' --set clear=true
+if command -v ffmpeg >/dev/null; then
+    expect 0 "$tsuya" loop loop.yaml -o clear.gif --set clear=true
+    for file in c.2.png clear.gif; do
+        ffmpeg -v error -i $file -frames:v 1 -f rawvideo -pix_fmt rgba rgba.raw -y </dev/null
+        python3 - $file <<'P' || fail "$file is not transparent"
+import sys
+d = open("rgba.raw", "rb").read()
+alphas = d[3::4]
+assert len(alphas) == 48 * 48 and 200 < sum(a == 0 for a in alphas) < 48 * 48 - 200, len(alphas)
+if sys.argv[1].endswith("png"):
+    edges = [d[i:i + 3] for i in range(0, len(d), 4) if 0 < d[i + 3] < 128]
+    assert len(edges) > 20 and max(max(e) for e in edges) > 100, edges
+P
+    done
+fi

@@ -57,3 +57,21 @@ static inline double loop_changed(const uint8_t* a, const uint8_t* b, int pixels
         changed += a[i] != b[i];
     return (double)changed / pixels;
 }
+
+static inline ty_vec3 loop_any(ty_rng* rng, float most)
+{
+    float x = ty_rng_range(rng, -most, most), y = ty_rng_range(rng, -most, most);
+    return (ty_vec3){x, y, ty_rng_range(rng, -most, most)};
+}
+
+// Three keys of a path that wanders a little.
+static inline void loop_keys_draw(ty_rng* rng, ty_loop_key keys[3])
+{
+    for (int k = 0; k < 3; k++)
+        keys[k] = (ty_loop_key){.at = (float)k / 3.0f + ty_rng_range(rng, 0.0f, 0.2f),
+                                .move = loop_any(rng, 0.1f),
+                                .rotate = loop_any(rng, 0.3f),
+                                .scale = {ty_rng_range(rng, 0.9f, 1.1f), 1.0f},
+                                .axis_move = loop_any(rng, 0.1f),
+                                .axis_rotate = loop_any(rng, 0.2f)};
+}

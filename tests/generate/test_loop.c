@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops close whatever moves, the turn is exact, tiles tile, and no machine or thread changes a bit.
+// The turn is exact, centred planes come back as mirrors, tiles tile, figures are what they say.
 #include "loop_frames.h"
 
 enum
 {
-    SETUPS = 200,
     FRAMES = 48,
     SIDE = 40 // voxels, and pixels
 };
@@ -40,86 +39,6 @@ static void turns_are_exact(void** state)
             }
 }
 
-// --- closing ---
-
-static ty_vec3 any(ty_rng* rng, float most)
-{
-    float x = ty_rng_range(rng, -most, most), y = ty_rng_range(rng, -most, most);
-    return (ty_vec3){x, y, ty_rng_range(rng, -most, most)};
-}
-
-static void keys_draw(ty_rng* rng, ty_loop_key keys[3])
-{
-    for (int k = 0; k < 3; k++)
-        keys[k] = (ty_loop_key){.at = (float)k / 3.0f + ty_rng_range(rng, 0.0f, 0.2f),
-                                .move = any(rng, 0.1f),
-                                .rotate = any(rng, 0.3f),
-                                .scale = {ty_rng_range(rng, 0.9f, 1.1f), 1.0f},
-                                .axis_move = any(rng, 0.1f),
-                                .axis_rotate = any(rng, 0.2f)};
-}
-
-// Change at the seam against the largest of all other steps. drift: how far the axis has gone when the loop is over.
-static double seam(const ty_loop_recipe* recipe, const ty_loop_volume* volume, float drift)
-{
-    uint8_t *first = NULL, *last = NULL;
-    int pixels = recipe->size[0] * recipe->size[1];
-    double most = 0.0;
-    for (int i = 0; i < recipe->frames; i++)
-    {
-        ty_loop_recipe moved = *recipe;
-        moved.axis.point.z += drift * (float)i / (float)recipe->frames;
-        moved.axis.point.x += drift * (float)i / (float)recipe->frames;
-        moved.plane.center.z += drift * (float)i / (float)recipe->frames;
-        uint8_t* now = loop_inside(&moved, volume, i);
-        double changed = i > 0 ? loop_changed(last, now, pixels) : 0.0;
-        most = changed > most ? changed : most;
-        if (i == 0)
-            first = now;
-        else if (last != first)
-            ty_free(last);
-        last = now;
-    }
-    double at_seam = loop_changed(last, first, pixels);
-    ty_free(first);
-    ty_free(last);
-    return at_seam / most;
-}
-
-static void seams_are_steps_like_others(void** state)
-{
-    (void)state;
-    int worse = 0, drifted = 0;
-    double worst = 0.0;
-    for (int i = 0; i < SETUPS; i++)
-    {
-        ty_rng rng = ty_rng_make((ty_seed){5}, (uint64_t)i, 0);
-        ty_loop_volume volume = loop_waves(SIDE, 14.0f, false, (uint64_t)i);
-        ty_loop_key keys[3];
-        ty_loop_recipe recipe = base();
-        recipe.plane = (ty_loop_plane){any(&rng, 0.3f), any(&rng, 3.0f), {1.2f, 1.2f}};
-        recipe.axis = (ty_loop_axis){any(&rng, 0.3f), any(&rng, 1.0f)};
-        recipe.motion.easing = ty_rng_float(&rng);
-        if (i % 2)
-        {
-            keys_draw(&rng, keys);
-            recipe.motion.keys = (ty_param_list){keys, 3};
-        }
-        double ratio = seam(&recipe, &volume, 0.0f);
-        worst = ratio > worst ? ratio : worst;
-        worse += ratio > 1.0;
-        drifted += i % 8 == 0 && seam(&recipe, &volume, 0.6f) > 1.1;
-        ty_loop_volume_term(&volume);
-    }
-    // One step of forty-eight: by chance it is the largest of all in few set-ups, and then by little.
-    print_message("seam against largest other step: at most %.3f, above 1 in %d of %d; with a drift above 1.1 in %d of "
-                  "%d\n",
-                  worst, worse, SETUPS, drifted, SETUPS / 8);
-    assert_true(worst <= 1.1);
-    assert_true(worse <= SETUPS / 40);
-    assert_true(drifted >= SETUPS / 8 * 4 / 5);
-}
-
 // --- what a loop is ---
 
 static void centred_planes_come_back_as_mirrors(void** state)
@@ -151,31 +70,6 @@ static float* values_of(const ty_loop_recipe* recipe, const ty_loop_volume* volu
     memcpy(copy, values, size);
     ty_loop_painter_destroy(painter);
     return copy;
-}
-
-static void frame_n_is_frame_0(void** state)
-{
-    (void)state;
-    ty_loop_volume volume = loop_waves(SIDE, 14.0f, false, 3);
-    ty_loop_key keys[3];
-    for (int i = 0; i < 60; i++)
-    {
-        ty_rng rng = ty_rng_make((ty_seed){6}, (uint64_t)i, 0);
-        ty_loop_recipe recipe = base();
-        recipe.plane = (ty_loop_plane){any(&rng, 0.3f), any(&rng, 3.0f), {1.2f, 1.2f}};
-        recipe.axis = (ty_loop_axis){any(&rng, 0.3f), any(&rng, 1.0f)};
-        recipe.motion.easing = ty_rng_float(&rng);
-        recipe.motion.kind = i % 3 == 2 ? TY_LOOP_REST : TY_LOOP_TURN;
-        recipe.motion.turns = 1 + i % 4;
-        keys_draw(&rng, keys);
-        if (i % 3 > 0)
-            recipe.motion.keys = (ty_param_list){keys, 3};
-        float *a = values_of(&recipe, &volume, i % FRAMES), *b = values_of(&recipe, &volume, i % FRAMES + 2 * FRAMES);
-        assert_memory_equal(a, b, SIDE * SIDE * sizeof *a);
-        ty_free(a);
-        ty_free(b);
-    }
-    ty_loop_volume_term(&volume);
 }
 
 static void orbits_tile(void** state)
@@ -257,13 +151,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(turns_are_exact),
-        cmocka_unit_test(frame_n_is_frame_0),
         cmocka_unit_test(centred_planes_come_back_as_mirrors),
         cmocka_unit_test(orbits_tile),
         cmocka_unit_test(steps_are_as_long_as_they_are_said_to_be),
         cmocka_unit_test(what_lies_beside_the_volume_is_told),
         cmocka_unit_test(figures_of_pairs_are_cohens),
-        cmocka_unit_test(seams_are_steps_like_others),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,7 +16,7 @@ enum
 
 typedef struct kept
 {
-    float* planes[3]; // of the frame that is kept
+    float* planes[4]; // of the frame that is kept
     int frame, channels, count;
     ty_hasher* hasher; // of all
 } kept;
@@ -50,7 +50,7 @@ static ty_status make(const ty_loop_recipe* recipe, int frame, ty_workers* worke
 
 static void forget(kept* k)
 {
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 4; c++)
         ty_free(k->planes[c]);
 }
 
@@ -140,6 +140,62 @@ static void the_logo_is_there_at_frame_1(void** state)
         ty_free(rgb);
         forget(&k);
     }
+}
+
+// The logo with its background transparent.
+static float* clear_logo_write(const char* path, int colors)
+{
+    float *rgb = logo_write(path, colors), *rgba = TY_ALLOC(float, 4 * SIDE * SIDE);
+    for (int p = 0; p < SIDE * SIDE; p++)
+    {
+        memcpy(rgba + 4 * p, rgb + 3 * p, 3 * sizeof *rgb);
+        rgba[4 * p + 3] = rgb[3 * p] == 250.0f / 255.0f ? 0.0f : 1.0f;
+    }
+    ty_image image = {.width = SIDE, .height = SIDE, .channels = 4, .pixels = rgba};
+    assert_int_equal(ty_image_write(path, &image, 8, NULL), TY_OK);
+    ty_free(rgb);
+    return rgba;
+}
+
+static void clear_backgrounds_stay_clear(void** state)
+{
+    (void)state;
+    const char* path = in_folder("clear.png");
+    float* rgba = clear_logo_write(path, 3);
+    for (int i = 0; i < 4; i++)
+    {
+        ty_loop_part part = logo_part(path, i < 2 ? 3 : 0); // of no colours: where the recipe says so
+        part.mix = i == 1 ? TY_LOOP_MIX_BLEND : TY_LOOP_MIX_LARGEST;
+        ty_loop_recipe recipe = recipe_of(&part, 1);
+        recipe.clear = i >= 2;
+        recipe.high = (ty_rgb){0.5f, i == 2 ? 0.5f : 0.25f, 0.5f};
+        recipe.low = (ty_rgb){0.9f, 0.2f, 0.1f}; // is not seen
+        for (int frame = 1; frame <= 3; frame += 2)
+        {
+            kept k;
+            ty_hash hash;
+            int edges = 0;
+            assert_int_equal(make(&recipe, frame, NULL, &k, &hash, NULL), TY_OK);
+            assert_int_equal(k.channels, i == 2 ? 2 : 4);
+            const float* alpha = k.planes[k.channels - 1];
+            for (int p = 0; p < SIDE * SIDE; p++)
+            {
+                edges += alpha[p] > 0.0f && alpha[p] < 1.0f;
+                assert_true(alpha[p] >= 0.0f && alpha[p] <= 1.0f);
+                if (frame == 1)
+                    assert_true(alpha[p] == rgba[4 * p + 3]);
+                for (int c = 0; c < k.channels - 1; c++)
+                {
+                    float full = c == 1 && i == 3 ? 0.25f : 0.5f; // multiplied by alpha
+                    assert_true(i < 2 ? k.planes[c][p] <= alpha[p] : k.planes[c][p] == alpha[p] * full);
+                    assert_true(alpha[p] > 0.0f || k.planes[c][p] == 0.0f);
+                }
+            }
+            assert_true(frame == 1 ? edges == 0 : edges > 50);
+            forget(&k);
+        }
+    }
+    ty_free(rgba);
 }
 
 static void seventeen_colors_become_sixteen(void** state)
@@ -532,6 +588,50 @@ static void mistakes_are_refused(void** state)
     must_refuse(&wrong, "motion.kind: an orbit needs a volume that wraps in x and y");
 }
 
+// What can be told before the reaction runs is told before it runs: this one would take a day.
+static void mistakes_cost_nothing(void** state)
+{
+    (void)state;
+    ty_loop_part parts[2] = {part_default(), part_default()};
+    parts[0].reaction.cells[0] = parts[0].reaction.cells[1] = 1024;
+    parts[0].reaction.start = parts[0].reaction.every = 1000000;
+    ty_loop_recipe good = recipe_of(parts, 1), wrong = good;
+    wrong.axis.direction = (ty_vec3){0.0f, 0.0f, 0.0f};
+    must_refuse(&wrong, "axis.direction: [0, 0, 0]; any length but zero");
+    wrong = good;
+    wrong.plane.center.x = 3.0f;
+    wrong.motion.kind = TY_LOOP_REST;
+    wrong.plane.center.z = 1.0f;
+    must_refuse(&wrong,
+                "plane: at frame 1 it lies outside the volume, which reaches to x 1, y 1, z 0.125977 both ways");
+    wrong = good;
+    wrong.motion.kind = TY_LOOP_ORBIT;
+    parts[0].twist = 1.0f;
+    must_refuse(&wrong, "motion.kind: an orbit needs a volume that wraps in x and y");
+    parts[0].twist = 0.0f;
+    wrong = recipe_of(parts, 2);
+    parts[1].source = TY_LOOP_RAW;
+    must_refuse(&wrong, "volume[1].raw.file: missing");
+    parts[1].raw = (ty_loop_raw){in_folder("t.0001.png"), 9, 9, 9, TY_LOOP_U16, 3, false};
+    must_refuse(&wrong, "9 x 9 x 9 numbers of 2 and a header of 3 are 1461");
+    parts[1] = part_default();
+    parts[1].reaction.time_step = 9.0f;
+    must_refuse(&wrong, "time_step: 9");
+    parts[1] = logo_part(in_folder("logo.png"), 2);
+    must_refuse(&wrong, "volume[1].colors: all parts have colours of one mix, or none has any");
+    parts[1].reaction.depth = 4;
+    must_refuse(&wrong, "volume[1].reaction.depth: 4; with a logo an odd number");
+    parts[1] = part_default();
+    parts[1].source = TY_LOOP_FILL;
+    parts[1].fill.loop.span = 1 + parts[1].fill.steps;
+    must_refuse(&wrong, "loop.span");
+    parts[1] = part_default();
+    parts[1].range[0] = parts[1].range[1] = 2.0f;
+    must_refuse(&wrong, "volume[1].range: [2, 2]; two different numbers");
+    parts[0].reaction.cells[0] = parts[0].reaction.cells[1] = parts[0].reaction.depth = 2048;
+    must_refuse(&good, "volume: 2048 x 2048 x 2048 voxels; at most 2147483647 in all");
+}
+
 static ty_status make_once(void* context)
 {
     kept k;
@@ -566,6 +666,7 @@ int main(void)
     ty_log_set_level(TY_LOG_ERROR);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_logo_is_there_at_frame_1),
+        cmocka_unit_test(clear_backgrounds_stay_clear),
         cmocka_unit_test(seventeen_colors_become_sixteen),
         cmocka_unit_test(colors_add_up_to_v),
         cmocka_unit_test(colors_stay_and_change_no_shape),
@@ -577,6 +678,7 @@ int main(void)
         cmocka_unit_test(threads_change_no_bit),
         cmocka_unit_test(memory_that_is_not_there_is_a_status),
         cmocka_unit_test(mistakes_are_refused),
+        cmocka_unit_test(mistakes_cost_nothing),
     };
     return cmocka_run_group_tests(tests, folder_setup, folder_teardown);
 }

@@ -16,6 +16,8 @@ void ty_bytes_term(ty_bytes* bytes);
 
 // Reads a whole regular file. A file over max_size, a directory, or an unreadable file is TY_BAD_FILE with the reason.
 TY_CHECKED ty_status ty_file_read(const char* path, size_t max_size, ty_bytes* out, ty_error* error);
+// How many bytes a regular file has; the same errors.
+TY_CHECKED ty_status ty_file_size(const char* path, size_t* out, ty_error* error);
 
 // An output that is complete or absent: write to .temporary, then commit. A process that ends by itself or by a signal
 // that it handles leaves no temporary behind (ty_atomic_abort_all from an exit path removes what is pending).

@@ -133,6 +133,8 @@ typedef struct ty_loop_recipe
     ty_loop_axis axis;
     ty_loop_motion motion;
     int frames;       // of the loop
+    float start;      // share of the path at which frame 1 is, 0..1, to the nearest frame
+    bool quiet_start; // instead after the step that changes least
     int size[2];      // pixels
     int sampling;     // ty_loop_sampling
     bool show_values; // the values as they are between low and high, instead of what lies above iso
@@ -141,6 +143,7 @@ typedef struct ty_loop_recipe
     int blur_samples; // moments in it
     float wavelength; // voxels, for the warning of steps; 0 = measured
     ty_rgb low, high; // ACEScg: outside and inside; both grey, and no colours: the channel Y alone
+    bool clear;       // outside is transparent, as it is where a logo's background is: a channel A
 } ty_loop_recipe;
 
 ty_loop_recipe ty_loop_recipe_default(void); // a volume is missing
