@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <tsuya/base/log.h>
+#include <tsuya/base/math.h>
 #include <tsuya/base/memory.h>
 #include <tsuya/base/rng.h>
 #include <tsuya/generate/turing.h>
@@ -118,31 +119,74 @@ static void measure(plain_field* f, ty_turing* field, const ty_turing_def* def)
     printf("float, streamed: %6.3f Gcell/s a core, %.1f Gflop/s; ratio %.1f\n", rate, FLOPS * rate, median(ratio));
 }
 
-// What masks and limits cost: the same field with more of them.
-static void measure_kinds(const ty_turing_def* given)
+// A disc of half the cells lives, with a rim of two cells; the rest is held.
+static void cut_disc(ty_turing* field, const ty_turing_def* def, bool is_free)
 {
-    static const char* const names[] = {"fixed masks", "free masks", "directions", "limit of both"};
-    static const ty_turing_plane planes[] = {TY_TURING_HOLD, TY_TURING_OPEN, TY_TURING_ALONG_COS};
-    for (int k = 0; k < 4; k++)
-    {
-        ty_error error;
-        ty_turing* field;
-        ty_turing_def def = *given;
-        def.limit = k == 3 ? TY_TURING_LIMIT_BOTH : TY_TURING_LIMIT_NONE;
-        if (ty_turing_create(&def, &field, &error) != TY_OK ||
-            (k < 3 && ty_turing_need(field, planes[k], &error) != TY_OK))
+    float radius = 0.4f * sqrtf((float)def->width * (float)def->height);
+    for (int y = 0; y < def->height; y++)
+        for (int x = 0; x < def->width; x++)
         {
-            ty_log_error(&error);
-            return;
+            float d = hypotf((float)(x - def->width / 2), (float)(y - def->height / 2));
+            float inside = ty_clamp(0.5f * (radius - d), 0.0f, 1.0f);
+            float soft = is_free ? 0.0f : 0.06f * (1.0f - inside) / inside;
+            ty_turing_row(field, TY_TURING_HOLD, y)[x] = inside > 0.0f ? soft : INFINITY;
+            if (is_free)
+                ty_turing_row(field, TY_TURING_OPEN, y)[x] = inside;
         }
+}
+
+typedef struct kind
+{
+    const char* name;
+    ty_turing_plane planes[2];
+    ty_turing_limit limit;
+    bool disc;
+} kind;
+
+static ty_turing* kind_create(const ty_turing_def* given, const kind* k)
+{
+    ty_error error;
+    ty_turing* field;
+    ty_turing_def def = *given;
+    def.limit = k->limit;
+    ty_status status = ty_turing_create(&def, &field, &error);
+    for (int i = 0; i < 2 && status == TY_OK; i++)
+        status = ty_turing_need(field, k->planes[i], &error);
+    if (status != TY_OK)
+    {
+        ty_log_error(&error);
+        return NULL;
+    }
+    if (k->disc)
+        cut_disc(field, &def, k->planes[1] == TY_TURING_OPEN);
+    return field;
+}
+
+// What masks and limits cost: the same field with more of them. The cells that are held count like the others.
+static void measure_kinds(const ty_turing_def* def)
+{
+    static const kind kinds[] = {
+        {"fixed masks, all lives", {TY_TURING_HOLD, TY_TURING_HOLD}, 0, false},
+        {"fixed masks, a disc", {TY_TURING_HOLD, TY_TURING_HOLD}, 0, true},
+        {"free masks, all lives", {TY_TURING_HOLD, TY_TURING_OPEN}, 0, false},
+        {"free masks, a disc", {TY_TURING_HOLD, TY_TURING_OPEN}, 0, true},
+        {"directions", {TY_TURING_ALONG_COS, TY_TURING_ALONG_COS}, 0, false},
+        {"limit of both", {TY_TURING_CONSTANT, TY_TURING_CONSTANT}, TY_TURING_LIMIT_BOTH, false},
+        {"limit, a free disc", {TY_TURING_HOLD, TY_TURING_OPEN}, TY_TURING_LIMIT_BOTH, true},
+    };
+    for (int i = 0; i < (int)(sizeof kinds / sizeof *kinds); i++)
+    {
+        ty_turing* field = kind_create(def, &kinds[i]);
+        if (!field)
+            return;
         double rate[ROUNDS];
         for (int r = 0; r < ROUNDS; r++)
         {
             double t = cpu_seconds();
-            ty_turing_step(field, OUR_STEPS / 4, NULL);
-            rate[r] = (double)def.width * (double)def.height * (OUR_STEPS / 4) / (cpu_seconds() - t) * 1e-9;
+            ty_turing_step(field, OUR_STEPS, NULL);
+            rate[r] = (double)def->width * (double)def->height * OUR_STEPS / (cpu_seconds() - t) * 1e-9;
         }
-        printf("  %-14s %6.3f Gcell/s a core\n", names[k], median(rate));
+        printf("  %-24s %6.3f Gcell/s a core\n", kinds[i].name, median(rate));
         ty_turing_destroy(field);
     }
 }

@@ -96,13 +96,19 @@ static bool planes_alloc(stream* s)
     return good;
 }
 
+static bool kinds_alloc(ty_turing* field)
+{
+    size_t count = field->stream.stride / STREAM_GROUP * (size_t)field->def.height;
+    return field->kinds || (field->kinds = TY_TRY_ALLOC(uint8_t, count));
+}
+
 static bool hold_alloc(ty_turing* field)
 {
     float** const all[] = {&field->weight, &field->pull_u, &field->pull_v};
     bool good = true;
     for (int i = 0; i < 3 && !field->weight; i++)
         good = good && (*all[2 - i] = plane_alloc(field)) != NULL; // weight last: it says that there is all
-    return good;
+    return good && kinds_alloc(field);
 }
 
 // The widest kernel of this CPU; both give the same bits.
@@ -157,6 +163,7 @@ void ty_turing_destroy(ty_turing* field)
         ty_free(all[i]);
     for (int i = 0; i < TY_TURING_PLANES; i++)
         ty_free(field->planes[i]);
+    ty_free(field->kinds);
     stream_release(&field->stream);
     ty_free(field);
 }
@@ -188,7 +195,7 @@ static void plane_range(ty_turing_plane plane, int* first, int* last)
 static bool derived_alloc(ty_turing* field, ty_turing_plane plane)
 {
     if (plane == TY_TURING_OPEN)
-        return field->inverse || (field->inverse = plane_alloc(field));
+        return kinds_alloc(field) && (field->inverse || (field->inverse = plane_alloc(field)));
     return plane != TY_TURING_HOLD || hold_alloc(field);
 }
 

@@ -3,6 +3,7 @@
 // the same, so that their bits are.
 #include "turing_state.h"
 #include <math.h>
+#include <string.h>
 
 #define JOIN2(a, b) a##b
 #define JOIN(a, b) JOIN2(a, b)
@@ -67,6 +68,48 @@ WIDE static void row_plain(const ty_turing_rates* k, const cells* r, int width)
         float g = clamp((q.vu * a + q.vv * b) + q.v_constant, q.v_most);
         out_u[x] = (q.centre_u * a + f) + q.spread_u * around_u;
         out_v[x] = (q.centre_v * b + g) + q.spread_v * around_v;
+    }
+}
+
+// The same as weighted_step with weights of 1, bit for bit.
+WIDE static void row_open(const ty_turing_rates* k, const cells* r, int width)
+{
+    const float *u = r->u[1], *uu = r->u[0], *ud = r->u[2], *c = r->constant;
+    const float *v = r->v[1], *vu = r->v[0], *vd = r->v[2];
+    float *out_u = r->out_u, *out_v = r->out_v;
+    const ty_turing_rates q = *k;
+    SIDE_BY_SIDE
+    for (int x = 0; x < width; x++)
+    {
+        float a = u[x], b = v[x];
+        float flow_u = ((u[x - 1] - a) + (u[x + 1] - a)) + ((uu[x] - a) + (ud[x] - a));
+        float flow_v = ((v[x - 1] - b) + (v[x + 1] - b)) + ((vu[x] - b) + (vd[x] - b));
+        float f = clamp((q.uu * a + q.uv * b) + c[x], q.u_most);
+        float g = clamp((q.vu * a + q.vv * b) + q.v_constant, q.v_most);
+        out_u[x] = (q.keep_u * a + f) + q.spread_u * flow_u;
+        out_v[x] = (q.keep_v * b + g) + q.spread_v * flow_v;
+    }
+}
+
+// The same as weighted_step with the weights of weights_limit where all is open, bit for bit.
+WIDE static void row_limited(const ty_turing_rates* k, const cells* r, int width)
+{
+    const float *u = r->u[1], *uu = r->u[0], *ud = r->u[2], *c = r->constant;
+    const float *v = r->v[1], *vu = r->v[0], *vd = r->v[2];
+    float *out_u = r->out_u, *out_v = r->out_v;
+    const ty_turing_rates q = *k;
+    const bool both = k->limit == TY_TURING_LIMIT_BOTH;
+    SIDE_BY_SIDE
+    for (int x = 0; x < width; x++)
+    {
+        float a = u[x], b = v[x], right = u[x + 1] - a, down = ud[x] - a;
+        float s = steep(q.slope, sqrtf(right * right + down * down)), t = both ? s : 1.0f;
+        float flow_u = (s * (u[x - 1] - a) + s * right) + (s * (uu[x] - a) + s * down);
+        float flow_v = (t * (v[x - 1] - b) + t * (v[x + 1] - b)) + (t * (vu[x] - b) + t * (vd[x] - b));
+        float f = clamp((q.uu * a + q.uv * b) + c[x], q.u_most);
+        float g = clamp((q.vu * a + q.vv * b) + q.v_constant, q.v_most);
+        out_u[x] = (q.keep_u * a + f) + q.spread_u * flow_u;
+        out_v[x] = (q.keep_v * b + g) + q.spread_v * flow_v;
     }
 }
 
@@ -249,14 +292,42 @@ static cells cells_at(const ty_turing* field, const stream_rows* rows, int y, in
     };
 }
 
+static void run_make(const ty_turing* field, const stream_rows* rows, int y, int begin, int end, int kind)
+{
+    cells c = cells_at(field, rows, y, begin);
+    int n = end - begin;
+    bool masked = c.inverse != NULL;
+    if (kind == TY_TURING_STILL)
+    {
+        memcpy(c.out_u, c.pull_u, (size_t)n * sizeof *c.out_u);
+        memcpy(c.out_v, c.pull_v, (size_t)n * sizeof *c.out_v);
+        return;
+    }
+    if (kind == TY_TURING_EVEN)
+        c.inverse = c.weight = NULL;
+    if (c.inverse || c.along_cos || (field->rates.limit != TY_TURING_LIMIT_NONE && field->rates.conservative))
+        row_weighted(&field->rates, &c, n);
+    else if (field->rates.limit != TY_TURING_LIMIT_NONE)
+        row_limited(&field->rates, &c, n);
+    else if (masked)
+        row_open(&field->rates, &c, n);
+    else
+        row_plain(&field->rates, &c, n);
+    if (c.weight)
+        row_hold(&c, n);
+}
+
 void JOIN(ty_turing_row_, KERNEL)(const void* context, const stream_rows* rows, int y, int begin, int end)
 {
     const ty_turing* field = context;
-    cells c = cells_at(field, rows, y, begin);
-    if (field->rates.limit == TY_TURING_LIMIT_NONE && !c.inverse && !c.along_cos)
-        row_plain(&field->rates, &c, end - begin);
-    else
-        row_weighted(&field->rates, &c, end - begin);
-    if (c.weight)
-        row_hold(&c, end - begin);
+    const uint8_t* kinds = field->kinds ? ty_turing_kinds(field, y) : NULL;
+    for (int x = begin, stop; x < end; x = stop)
+    {
+        int kind = kinds ? kinds[x / STREAM_GROUP] : TY_TURING_MIXED;
+        stop = kinds ? x + STREAM_GROUP : end;
+        while (stop < end && kinds[stop / STREAM_GROUP] == kind)
+            stop += STREAM_GROUP;
+        stop = stop < end ? stop : end;
+        run_make(field, rows, y, x, stop, kind);
+    }
 }

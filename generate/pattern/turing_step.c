@@ -73,10 +73,53 @@ static void rows_prepare(void* context, int64_t begin, int64_t end, int worker)
     }
 }
 
+// Whether n cells from i and their neighbours, of rows above and below as well, are as open as can be.
+static bool all_open(const ty_turing* field, size_t i, int n)
+{
+    if (!field->planes[TY_TURING_OPEN])
+        return true;
+    const float *at = field->planes[TY_TURING_OPEN] + i - 1, *above = at - field->stream.stride;
+    const float* below = at + field->stream.stride;
+    int closed = 0;
+    for (int k = 0; k < n + 2; k++)
+        closed |= (above[k] != 1.0f) | (at[k] != 1.0f) | (below[k] != 1.0f);
+    return closed == 0;
+}
+
+static ty_turing_cells group_sort(const ty_turing* field, size_t i, int n)
+{
+    int held = 0, loose = 0;
+    for (int k = 0; k < n && field->weight; k++)
+    {
+        held |= field->weight[i + (size_t)k] != 1.0f;
+        loose |= field->weight[i + (size_t)k] != 0.0f;
+    }
+    if (field->weight && !loose)
+        return TY_TURING_STILL;
+    return !held && all_open(field, i, n) ? TY_TURING_EVEN : TY_TURING_MIXED;
+}
+
+static void rows_sort(void* context, int64_t begin, int64_t end, int worker)
+{
+    const ty_turing* field = context;
+    int width = field->def.width;
+    (void)worker;
+    for (int y = (int)begin; y < (int)end; y++)
+        for (int x = 0; x < width; x += STREAM_GROUP)
+        {
+            int n = width - x < STREAM_GROUP ? width - x : STREAM_GROUP;
+            ty_turing_kinds(field, y)[x / STREAM_GROUP] =
+                (uint8_t)group_sort(field, ty_turing_cell(field, y) + (size_t)x, n);
+        }
+}
+
 void ty_turing_step(ty_turing* field, int step_count, ty_workers* workers)
 {
-    ty_parallel_all(workers, field->def.height, PIECE_CELLS / field->def.width + 1, rows_prepare, field);
+    int64_t rows = PIECE_CELLS / field->def.width + 1;
+    ty_parallel_all(workers, field->def.height, rows, rows_prepare, field);
     if (field->planes[TY_TURING_OPEN])
         open_around(field);
+    if (field->kinds)
+        ty_parallel_all(workers, field->def.height, rows, rows_sort, field);
     (void)!stream_steps(&field->stream, step_count, workers); // whole
 }

@@ -276,6 +276,44 @@ static void threads_kernels_and_chunks_give_the_same_bits(void** state)
         ty_workers_destroy(workers[i]);
 }
 
+// A field of the shared disc with a limit, directions, or neither.
+static ty_turing* disc_with(bool fixed, float soft, int kind)
+{
+    ty_turing* field = disc(fixed, soft);
+    field->rates.limit = kind % 3;
+    field->rates.conservative = kind == 4;
+    if (kind == 3)
+    {
+        need(field, TY_TURING_ALONG_COS);
+        for (int y = 0; y < 200; y++)
+            ty_turing_row(field, TY_TURING_ALONG_COS, y)[100] = 0.5f;
+    }
+    start_by_chance(field, 7);
+    return field;
+}
+
+// What rows leave out, far from rims and in what is held, changes nothing.
+static void what_is_left_out_changes_no_bit(void** state)
+{
+    (void)state;
+    for (int i = 0; i < 20; i++)
+    {
+        ty_turing* short_cut = disc_with(i % 2, i / 2 % 2 ? 3.0f : 0.0f, i / 4);
+        ty_turing* all = disc_with(i % 2, i / 2 % 2 ? 3.0f : 0.0f, i / 4);
+        ty_free(all->kinds);
+        all->kinds = NULL;
+        ty_turing_step(short_cut, 40, NULL);
+        ty_turing_step(all, 40, NULL);
+        assert_equal_fields(short_cut, all);
+        int count[3] = {0};
+        for (int k = 0; k < 200 * 12; k++)
+            count[ty_turing_kinds(short_cut, k / 12)[k % 12]]++;
+        assert_true(count[TY_TURING_MIXED] > 20 && count[TY_TURING_EVEN] > 1000 && count[TY_TURING_STILL] > 300);
+        ty_turing_destroy(short_cut);
+        ty_turing_destroy(all);
+    }
+}
+
 // --- mistakes ---
 
 static void the_step_has_a_bound(void** state)
@@ -347,6 +385,7 @@ int main(void)
         cmocka_unit_test(a_divergence_keeps_the_sum),
         cmocka_unit_test(stripes_follow_the_activators_direction),
         cmocka_unit_test(threads_kernels_and_chunks_give_the_same_bits),
+        cmocka_unit_test(what_is_left_out_changes_no_bit),
         cmocka_unit_test(the_step_has_a_bound),
         cmocka_unit_test(memory_that_is_refused_leaves_nothing),
     };
