@@ -1,16 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between the cells of a plane.
+// From cells to finer pixels: the cubic through the four neighbours along both axes (Catmull & Rom 1974).
 #pragma once
 #include <stdbool.h>
 
-// The cubic through the four neighbours (Catmull & Rom 1974) at t past the second.
-static inline void cubic_weights(float t, float w[4])
+enum
 {
-    w[0] = 0.5f * t * (t * (2.0f - t) - 1.0f);
-    w[1] = 0.5f * (t * t * (3.0f * t - 5.0f) + 2.0f);
-    w[2] = 0.5f * t * (t * (4.0f - 3.0f * t) + 1.0f);
-    w[3] = 0.5f * t * t * (t - 1.0f);
-}
+    CUBIC_PAD = 3 // cells beyond each end of a line
+};
+
+typedef struct cubic_axis
+{
+    int cells, pixels;
+    bool wraps, whole;        // whole: each pixel is a cell
+    int* first;               // by pixel: the first of its four cells, counted from CUBIC_PAD before cell 0
+    float *w0, *w1, *w2, *w3; // by pixel: the weights of the four
+} cubic_axis;
+
+// Of scale pixels a cell, shift cells on. False: there is no memory. Term on failure too.
+bool cubic_axis_init(cubic_axis* axis, int cells, int scale, float shift, bool wraps);
+void cubic_axis_term(cubic_axis* axis); // zeroed ones are allowed
+
+// Row y of down's pixels, across's of them, from plane: [down cells][across cells]. line: room for the cells and two
+// pads.
+void cubic_row(const cubic_axis* across, const cubic_axis* down, const float* plane, int y, float* restrict line,
+               float* restrict out);
 
 static inline int cubic_neighbour(int i, int n, bool wrap)
 {

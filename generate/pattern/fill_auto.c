@@ -35,8 +35,8 @@ static void rule_apply(fill_run* run, const ty_fill_auto* a, int mark, int over)
         for (int x = 0; x < run->width; x++)
         {
             size_t at = fill_cell(run, x, y);
-            int now = marks[x] & (TY_GRAY_SCOTT_MARKS - 1);
-            if ((over < 0 || now == over) && is_there(run, a, at, v[x], run->cover[at]))
+            if ((over < 0 || fill_mark_of(marks[x]) == over) &&
+                is_there(run, a, at, v[x], run->distance ? run->distance[at] : 0.0f))
                 marks[x] = (uint8_t)((marks[x] & TY_GRAY_SCOTT_BARRIER) | mark);
         }
     }
@@ -45,17 +45,13 @@ static void rule_apply(fill_run* run, const ty_fill_auto* a, int mark, int over)
 ty_status fill_auto_mark(fill_run* run, ty_error* error)
 {
     const ty_fill_auto* autos = run->recipe->autos.items;
-    bool any = false, band = false;
-    for (int i = 0; i < run->recipe->autos.count; i++)
-    {
-        any = any || autos[i].rates;
-        band = band || (autos[i].rates && autos[i].where == TY_FILL_WHERE_BAND);
-    }
-    if (band)
-        fill_distance(run, run->cover);
+    bool any = false;
     for (int i = 0; i < run->recipe->autos.count; i++)
         if (autos[i].rates)
+        {
+            any = true;
             rule_apply(run, &autos[i], fill_mark_find(run, autos[i].mark, "auto", error),
                        autos[i].over ? fill_mark_find(run, autos[i].over, "auto", error) : -1);
+        }
     return any ? fill_vary(run, error) : TY_OK;
 }

@@ -35,17 +35,56 @@ static void look(const fill_run* run, int x, int y, int dx, int dy)
     }
 }
 
+// Takes the point (px, py) for (x, y) if it is nearer than (*nx, *ny); NaN is farther than any.
+static inline void take_nearer(float px, float py, float x, float y, float* nx, float* ny)
+{
+    float now = ty_sqr(*nx - x) + ty_sqr(*ny - y), other = ty_sqr(px - x) + ty_sqr(py - y);
+    bool nearer = other < now || (isnan(now) && !isnan(other));
+    *nx = nearer ? px : *nx;
+    *ny = nearer ? py : *ny;
+}
+
+// Looks from a cell to its three neighbours of the row before, or behind.
+static void cell_look(const fill_run* run, int x, int y, int from_row)
+{
+    for (int k = -1; k <= 1; k++)
+        look(run, x, y, k, from_row);
+}
+
+// The same from all cells of row y but the first and the last, which may look over an edge.
+static void row_look(const fill_run* run, int y, int from_row)
+{
+    int j = y + from_row;
+    float shift = j < 0 ? (float)-run->height : j >= run->height ? (float)run->height : 0.0f;
+    if (shift != 0.0f && !run->wrap_y)
+        return;
+    j -= (int)shift;
+    float* restrict nx = run->near_x + fill_cell(run, 0, y), * restrict ny = run->near_y + fill_cell(run, 0, y);
+    const float *fx = run->near_x + fill_cell(run, 0, j), *fy = run->near_y + fill_cell(run, 0, j);
+    for (int x = 1; x < run->width - 1; x++)
+    {
+        float px = nx[x], py = ny[x];
+        for (int k = -1; k <= 1; k++)
+            take_nearer(fx[x + k], fy[x + k] + shift, (float)x, (float)y, &px, &py);
+        nx[x] = px;
+        ny[x] = py;
+    }
+}
+
 static void row_sweep(const fill_run* run, int y, int from_row)
 {
-    for (int x = 0; x < run->width; x++)
-    {
-        look(run, x, y, -1, from_row);
-        look(run, x, y, 0, from_row);
-        look(run, x, y, 1, from_row);
-        look(run, x, y, -1, 0);
-    }
-    for (int x = run->width - 1; x >= 0; x--)
-        look(run, x, y, 1, 0);
+    int last = run->width - 1;
+    float *nx = run->near_x + fill_cell(run, 0, y), *ny = run->near_y + fill_cell(run, 0, y);
+    row_look(run, y, from_row);
+    cell_look(run, 0, y, from_row);
+    look(run, 0, y, -1, 0);
+    for (int x = 1; x < last; x++)
+        take_nearer(nx[x - 1], ny[x - 1], (float)x, (float)y, &nx[x], &ny[x]);
+    cell_look(run, last, y, from_row);
+    look(run, last, y, -1, 0);
+    look(run, last, y, 1, 0);
+    for (int x = last - 1; x >= 0; x--)
+        take_nearer(nx[x + 1], ny[x + 1], (float)x, (float)y, &nx[x], &ny[x]);
 }
 
 void fill_nearest(const fill_run* run)
@@ -82,9 +121,11 @@ static void crossing(const fill_run* run, int x, int y, int dx, int dy)
     }
 }
 
-void fill_distance(const fill_run* run, float* distance)
+static void rows_cross(void* context, int64_t begin, int64_t end, int worker)
 {
-    for (int y = 0; y < run->height; y++)
+    const fill_run* run = *(const fill_run* const*)context;
+    (void)worker;
+    for (int y = (int)begin; y < (int)end; y++)
         for (int x = 0; x < run->width; x++)
         {
             run->near_x[fill_cell(run, x, y)] = run->near_y[fill_cell(run, x, y)] = NAN;
@@ -93,59 +134,94 @@ void fill_distance(const fill_run* run, float* distance)
             crossing(run, x, y, 0, 1);
             crossing(run, x, y, 0, -1);
         }
-    fill_nearest(run);
+}
+
+static void rows_measure(void* context, int64_t begin, int64_t end, int worker)
+{
+    const fill_run* run = *(const fill_run* const*)context;
     float far = (float)(run->width + run->height);
-    for (int y = 0; y < run->height; y++)
+    (void)worker;
+    for (int y = (int)begin; y < (int)end; y++)
         for (int x = 0; x < run->width; x++)
         {
             size_t at = fill_cell(run, x, y);
             float ox = run->near_x[at] - (float)x, oy = run->near_y[at] - (float)y;
             float d = isnan(ox) ? far : sqrtf(ox * ox + oy * oy);
-            distance[at] = run->v[at] < run->level ? d : -d;
+            run->distance[at] = run->v[at] < run->level ? d : -d;
         }
 }
 
-// The mean of the neighbours with a value, for those without; what was found comes into force when all have looked.
-static void extend(const fill_run* run, float* v, const float* from)
+void fill_distance(const fill_run* run)
 {
-    for (int y = 0; y < run->height; y++)
+    if (!run->distance)
+        return;
+    ty_parallel_all(run->workers, run->height, 32, rows_cross, &run);
+    fill_nearest(run);
+    ty_parallel_all(run->workers, run->height, 32, rows_measure, &run);
+}
+
+// --- v of the field ---
+
+typedef struct extension
+{
+    const fill_run* run;
+    float* v;
+    const float* from;
+} extension;
+
+// The mean of the neighbours with a value, for those without; what was found comes into force when all have looked.
+static void rows_extend(void* context, int64_t begin, int64_t end, int worker)
+{
+    static const int steps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+    const extension* e = context;
+    const fill_run* run = e->run;
+    (void)worker;
+    for (int y = (int)begin; y < (int)end; y++)
         for (int x = 0; x < run->width; x++)
         {
-            static const int steps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
             float sum = 0.0f, count = 0.0f;
-            if (!isnan(from[fill_cell(run, x, y)]))
+            if (!isnan(e->from[fill_cell(run, x, y)]))
                 continue;
             for (int k = 0; k < 4; k++)
             {
                 int i = x + steps[k][0], j = y + steps[k][1];
-                if (i < 0 || i >= run->width || j < 0 || j >= run->height || isnan(from[fill_cell(run, i, j)]))
+                if (i < 0 || i >= run->width || j < 0 || j >= run->height || isnan(e->from[fill_cell(run, i, j)]))
                     continue;
-                sum += from[fill_cell(run, i, j)];
+                sum += e->from[fill_cell(run, i, j)];
                 count += 1.0f;
             }
             if (count > 0.0f)
-                v[fill_cell(run, x, y)] = sum / count;
+                e->v[fill_cell(run, x, y)] = sum / count;
         }
+}
+
+static void rows_take(void* context, int64_t begin, int64_t end, int worker)
+{
+    const fill_run* run = *(const fill_run* const*)context;
+    (void)worker;
+    for (int y = (int)begin; y < (int)end; y++)
+    {
+        float* v = run->v + fill_cell(run, 0, y);
+        const uint8_t* closed = run->closed + fill_cell(run, 0, y);
+        memcpy(v, ty_gray_scott_v(run->field, y), (size_t)run->width * sizeof(float));
+        for (int x = 0; x < run->width; x++)
+            v[x] = closed[x] ? NAN : v[x];
+    }
 }
 
 void fill_take_v(const fill_run* run)
 {
     size_t cells = fill_cells(run);
     bool any = false;
-    for (int y = 0; y < run->height; y++)
-        memcpy(run->v + fill_cell(run, 0, y), ty_gray_scott_v(run->field, y), (size_t)run->width * sizeof(float));
-    for (size_t i = 0; i < cells; i++)
-        if (run->closed[i])
-        {
-            run->v[i] = NAN;
-            any = true;
-        }
+    for (size_t i = 0; i < cells && !any; i++)
+        any = run->closed[i];
+    ty_parallel_all(run->workers, run->height, 32, rows_take, &run);
     for (int pass = 0; pass < 2 && any; pass++)
     {
+        extension e = {run, run->v, run->near_x};
         memcpy(run->near_x, run->v, cells * sizeof(float));
-        extend(run, run->v, run->near_x);
+        ty_parallel_all(run->workers, run->height, 32, rows_extend, &e);
     }
     for (size_t i = 0; i < cells && any; i++)
-        if (isnan(run->v[i]))
-            run->v[i] = 0.0f;
+        run->v[i] = isnan(run->v[i]) ? 0.0f : run->v[i];
 }

@@ -22,7 +22,7 @@ static void cell_set(const fill_run* run, size_t at, float u, float v)
 static int cell_mark(const fill_run* run, size_t at)
 {
     int x = (int)(at % (size_t)run->width), y = (int)(at / (size_t)run->width);
-    return ty_gray_scott_marks(run->field, y)[x] & (TY_GRAY_SCOTT_MARKS - 1);
+    return fill_mark_of(ty_gray_scott_marks(run->field, y)[x]);
 }
 
 // What cells hold that were closed and are not any more: those with cover 2.
@@ -149,7 +149,7 @@ static void state_blend(const fill_run* run, const ty_vec2* state, int mark)
         for (int x = 0; x < run->width; x++)
         {
             float c = run->cover[fill_cell(run, x, y)];
-            ty_vec2 to = state ? *state : run->plain[mark >= 0 ? mark : marks[x] & (TY_GRAY_SCOTT_MARKS - 1)];
+            ty_vec2 to = state ? *state : run->plain[mark >= 0 ? mark : fill_mark_of(marks[x])];
             if (c == 0.0f)
                 continue;
             u[x] = ty_lerp(u[x], to.x, c);
@@ -167,7 +167,7 @@ static void mark_set(const fill_run* run, int mark)
         for (int x = 0; x < run->width; x++)
         {
             float* c = &run->cover[fill_cell(run, x, y)];
-            bool same = (marks[x] & (TY_GRAY_SCOTT_MARKS - 1)) == mark;
+            bool same = fill_mark_of(marks[x]) == mark;
             if (*c > 0.0f)
                 marks[x] = (uint8_t)((marks[x] & TY_GRAY_SCOTT_BARRIER) | mark);
             *c = same ? 0.0f : *c;
@@ -226,8 +226,8 @@ static void barriers_tell(const fill_run* run)
     {
         uint8_t* marks = ty_gray_scott_marks(run->field, y);
         for (int x = 0; x < run->width; x++)
-            marks[x] = (uint8_t)((marks[x] & (TY_GRAY_SCOTT_MARKS - 1)) |
-                                 (run->closed[fill_cell(run, x, y)] ? TY_GRAY_SCOTT_BARRIER : 0));
+            marks[x] =
+                (uint8_t)(fill_mark_of(marks[x]) | (run->closed[fill_cell(run, x, y)] ? TY_GRAY_SCOTT_BARRIER : 0));
     }
 }
 

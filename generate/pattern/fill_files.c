@@ -45,6 +45,13 @@ static ty_status events_open(fill_run* run, int last, ty_error* error)
     return status;
 }
 
+static ty_status still_read(const fill_run* run, const ty_plane_file* file, ty_planes* out, ty_error* error)
+{
+    if (!file->path || ty_path_is_sequence(file->path))
+        return TY_OK;
+    return ty_plane_file_read_color(file, 1, run->color, out, error);
+}
+
 ty_status fill_files_open(fill_run* run, ty_error* error)
 {
     const ty_fill_recipe* r = run->recipe;
@@ -67,6 +74,10 @@ ty_status fill_files_open(fill_run* run, ty_error* error)
         any = any || run->images[i / 2][i % 2].path;
     if (status == TY_OK && any)
         status = ty_color_create(NULL, &run->color, error);
+    if (status == TY_OK)
+        status = still_read(run, &run->over, &run->still_over, error);
+    for (int i = 0; i < 2 * run->mark_count && status == TY_OK; i++)
+        status = still_read(run, &run->images[i / 2][i % 2], &run->stills[i / 2][i % 2], error);
     return status;
 }
 

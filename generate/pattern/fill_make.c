@@ -100,6 +100,7 @@ static ty_status loop_make(making* m, ty_error* error)
     {
         status = advance(m, moments[i].step, error);
         fill_take_v(&m->run);
+        fill_distance(&m->run);
         if (status == TY_OK)
             status = frame_put(m, moments[i].frame, moments[i].drift, error);
     }
@@ -153,6 +154,7 @@ static ty_status frame_make(making* m, int frame, ty_error* error)
         return status;
     trail_note(&m->run, frame, false);
     fill_take_v(&m->run);
+    fill_distance(&m->run);
     status = fill_auto_mark(&m->run, error);
     if (status == TY_OK)
         status = frame_put(m, frame, 0.0f, error);

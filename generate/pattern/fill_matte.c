@@ -4,6 +4,8 @@
 // pattern are laid over them.
 #include "fill_show.h"
 #include <math.h>
+#include <string.h>
+#include <tsuya/base/memory.h>
 
 // The quartic B-spline's weights of five cells, the third of which holds t, 0..1 within it.
 static void spline_weights(float t, float w[5])
@@ -36,21 +38,61 @@ static void shares(const fill_show_state* show, int x, int y, int cx, int cy, fl
         {
             size_t at = fill_cell(run, near_cell(cx + i - 2, run->width, run->wrap_x),
                                   near_cell(cy + j - 2, run->height, run->wrap_y));
-            share[show->layers[at]] += wx[i] * wy[j];
+            share[run->layers[at]] += wx[i] * wy[j];
         }
 }
 
-bool fill_is_single(const fill_show_state* show, int x, int y)
+// --- layers ---
+
+static void rows_take(void* context, int64_t begin, int64_t end, int worker)
 {
-    const fill_run* run = show->run;
-    uint8_t first = show->layers[fill_cell(run, x, y)];
-    for (int j = -2; j <= 2; j++)
-        for (int i = -2; i <= 2; i++)
-            if (show->layers[fill_cell(run, near_cell(x + i, run->width, run->wrap_x),
-                                       near_cell(y + j, run->height, run->wrap_y))] != first)
-                return false;
-    return true;
+    const fill_run* run = *(const fill_run* const*)context;
+    (void)worker;
+    for (int y = (int)begin; y < (int)end; y++)
+    {
+        const uint8_t *marks = ty_gray_scott_marks(run->field, y), *closed = run->closed + fill_cell(run, 0, y);
+        uint8_t* layers = run->layers + fill_cell(run, 0, y);
+        for (int x = 0; x < run->width; x++)
+            layers[x] = closed[x] ? FILL_CLOSED : fill_mark_of(marks[x]);
+    }
 }
+
+// Where a row's cells have neighbours of another layer within two cells: bits that differ, 0 = none.
+static void rows_compare(void* context, int64_t begin, int64_t end, int worker)
+{
+    const fill_run* run = *(const fill_run* const*)context;
+    (void)worker;
+    int w = run->width;
+    uint8_t* wide = TY_ALLOC(uint8_t, w + 4);
+    for (int y = (int)begin; y < (int)end; y++)
+    {
+        const uint8_t* layers = run->layers + fill_cell(run, 0, y);
+        uint8_t* mixed = run->mixed + fill_cell(run, 0, y);
+        memset(mixed, 0, (size_t)w);
+        for (int j = -2; j <= 2; j++)
+        {
+            const uint8_t* row = run->layers + fill_cell(run, 0, near_cell(y + j, run->height, run->wrap_y));
+            memcpy(wide + 2, row, (size_t)w);
+            for (int k = 1; k <= 2; k++)
+            {
+                wide[2 - k] = row[near_cell(-k, w, run->wrap_x)];
+                wide[w + 1 + k] = row[near_cell(w - 1 + k, w, run->wrap_x)];
+            }
+            for (int x = 0; x < w; x++)
+                mixed[x] |= (uint8_t)((wide[x] ^ layers[x]) | (wide[x + 1] ^ layers[x]) | (wide[x + 2] ^ layers[x]) |
+                                      (wide[x + 3] ^ layers[x]) | (wide[x + 4] ^ layers[x]));
+        }
+    }
+    ty_free(wide);
+}
+
+void fill_layers_take(const fill_run* run)
+{
+    ty_parallel_all(run->workers, run->height, 32, rows_take, &run);
+    ty_parallel_all(run->workers, run->height, 32, rows_compare, &run);
+}
+
+// --- mattes ---
 
 // A straight edge gives the lead 1.2 a cell: one pixel of it is to go from 0 to 1.
 static void sharpen(const fill_show_state* show, const float share[FILL_LAYERS], float matte[FILL_LAYERS])
@@ -72,38 +114,52 @@ static void sharpen(const fill_show_state* show, const float share[FILL_LAYERS],
         matte[k] /= sum;
 }
 
-static float pixel_at(const fill_show_state* show, const float* plane, int x, int y)
+static float coverage_of(float left, float right, float above, float below, float here, float level)
 {
-    x = near_cell(x, show->width, show->run->wrap_x);
-    y = near_cell(y, show->height, show->run->wrap_y);
-    return plane[(size_t)y * (size_t)show->width + (size_t)x];
-}
-
-float fill_coverage(const fill_show_state* show, int x, int y)
-{
-    float dx = 0.5f * (pixel_at(show, show->v, x + 1, y) - pixel_at(show, show->v, x - 1, y));
-    float dy = 0.5f * (pixel_at(show, show->v, x, y + 1) - pixel_at(show, show->v, x, y - 1));
-    float slope = sqrtf(dx * dx + dy * dy), over = pixel_at(show, show->v, x, y) - show->run->level;
+    float dx = 0.5f * (right - left), dy = 0.5f * (below - above), slope = sqrtf(dx * dx + dy * dy);
+    float over = here - level;
     return slope > 1e-6f ? ty_clamp(0.5f + over / slope, 0.0f, 1.0f) : over >= 0.0f ? 1.0f : 0.0f;
 }
 
-// How much of a pixel a rule takes.
-static float auto_share(const fill_show_state* show, const ty_fill_auto* a, int x, int y)
+void fill_coverage_row(const fill_show_state* show, int y, float* restrict out)
 {
-    float scale = (float)show->run->recipe->scale;
-    int cx, cy;
+    const fill_run* run = show->run;
+    size_t w = (size_t)show->width;
+    const float* row = show->v + (size_t)y * w;
+    const float* above = show->v + (size_t)near_cell(y - 1, show->height, run->wrap_y) * w;
+    const float* below = show->v + (size_t)near_cell(y + 1, show->height, run->wrap_y) * w;
+    float level = run->level, before = run->wrap_x ? row[w - 1] : row[0], behind = run->wrap_x ? row[0] : row[w - 1];
+    for (size_t x = 1; x + 1 < w; x++)
+        out[x] = coverage_of(row[x - 1], row[x + 1], above[x], below[x], row[x], level);
+    out[0] = coverage_of(before, row[1], above[0], below[0], row[0], level);
+    out[w - 1] = coverage_of(row[w - 2], behind, above[w - 1], below[w - 1], row[w - 1], level);
+}
+
+// How much of a pixel a rule takes.
+static float auto_share(const fill_show_state* show, const ty_fill_auto* a, int x, int y, const float* coverage)
+{
+    const fill_run* run = show->run;
+    float scale = (float)run->recipe->scale;
     if (a->where == TY_FILL_WHERE_FILLED)
-        return fill_coverage(show, x, y);
+        return coverage[x];
     if (a->where == TY_FILL_WHERE_HOLE)
-        return 1.0f - fill_coverage(show, x, y);
+        return 1.0f - coverage[x];
     if (a->where == TY_FILL_WHERE_BAND)
     {
-        float d = pixel_at(show, show->distance, x, y);
+        float d = show->distance[(size_t)y * (size_t)show->width + (size_t)x];
         return ty_clamp(0.5f + scale * (d - a->reach[0]), 0.0f, 1.0f) *
                ty_clamp(0.5f + scale * (a->reach[1] - d), 0.0f, 1.0f);
     }
-    fill_pixel_cell(show, x, y, &cx, &cy);
-    return show->run->trail[fill_cell(show->run, cx, cy)] >= 0.0f ? 1.0f : 0.0f;
+    return run->trail[fill_cell(run, show->cell_x[x], y / run->recipe->scale)] >= 0.0f ? 1.0f : 0.0f;
+}
+
+bool fill_is_ruled(const fill_show_state* show, int x, int y, const float* coverage)
+{
+    const ty_fill_auto* autos = show->run->recipe->autos.items;
+    for (int i = 0; i < show->run->recipe->autos.count; i++)
+        if (auto_share(show, &autos[i], x, y, coverage) > 0.0f)
+            return true;
+    return false;
 }
 
 static void auto_lay(float matte[FILL_LAYERS], int mark, int over, float share)
@@ -124,21 +180,21 @@ static void auto_lay(float matte[FILL_LAYERS], int mark, int over, float share)
     matte[mark] += share * open;
 }
 
-void fill_matte(const fill_show_state* show, int x, int y, float matte[FILL_LAYERS])
+void fill_matte(const fill_show_state* show, int x, int y, const float* coverage, float matte[FILL_LAYERS])
 {
-    const ty_fill_auto* autos = show->run->recipe->autos.items;
-    int cx, cy;
-    fill_pixel_cell(show, x, y, &cx, &cy);
-    size_t cell = fill_cell(show->run, cx, cy);
-    if (show->single[cell])
+    const fill_run* run = show->run;
+    const ty_fill_auto* autos = run->recipe->autos.items;
+    int cx = show->cell_x[x], cy = y / run->recipe->scale;
+    size_t cell = fill_cell(run, cx, cy);
+    if (!run->mixed[cell])
         for (int k = 0; k < FILL_LAYERS; k++)
-            matte[k] = k == show->layers[cell] ? 1.0f : 0.0f;
+            matte[k] = k == run->layers[cell] ? 1.0f : 0.0f;
     else
     {
         float share[FILL_LAYERS] = {0};
         shares(show, x, y, cx, cy, share);
         sharpen(show, share, matte);
     }
-    for (int i = 0; i < show->run->recipe->autos.count; i++)
-        auto_lay(matte, show->auto_marks[i], show->auto_over[i], auto_share(show, &autos[i], x, y));
+    for (int i = 0; i < run->recipe->autos.count; i++)
+        auto_lay(matte, show->auto_marks[i], show->auto_over[i], auto_share(show, &autos[i], x, y, coverage));
 }

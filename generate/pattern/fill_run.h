@@ -36,16 +36,19 @@ typedef struct fill_run
     uint8_t* closed;                    // [height][width], FILL_OUTSIDE and FILL_BARRIER
     float *trail, *before;              // [height][width]; frame of the first time, v at the frame before; or NULL
     float* v;                           // [height][width], what fill_take_v took
+    float* distance;                    // [height][width], cells from the front at this frame; NULL: nobody asks
     float *cover, *near_x, *near_y;     // [height][width], for whoever works
+    uint8_t *layers, *mixed;            // [height][width], what a frame shows of marks and closed cells
     float* noise;                       // [height][width], -1..1: the recipe's variation; NULL without
     float trail_threshold;
     bool varies; // feed differs within a mark
     fill_outputs outputs;
     ty_plane_file region, over;
-    ty_plane_file* events;                        // by event; path NULL = no image
-    ty_plane_file images[TY_GRAY_SCOTT_MARKS][2]; // image and beneath
-    char (*keys)[FILL_KEY];                       // what the files' messages begin with
-    ty_color* color;                              // where images are
+    ty_plane_file* events;                                // by event; path NULL = no image
+    ty_plane_file images[TY_GRAY_SCOTT_MARKS][2];         // image and beneath
+    ty_planes still_over, stills[TY_GRAY_SCOTT_MARKS][2]; // of files that are no sequences
+    char (*keys)[FILL_KEY];                               // what the files' messages begin with
+    ty_color* color;                                      // where images are
 } fill_run;
 
 // fill_setup.c
@@ -79,13 +82,13 @@ TY_CHECKED ty_status fill_solve_steps(fill_run* run, ty_error* error);
 // Nearest points by sweeps (Danielsson 1980), within a fraction of a cell: near_x and near_y hold the point of a cell
 // or NaN before, the nearest of all points after (beyond wrapped edges where it lies there), NaN without any.
 void fill_nearest(const fill_run* run);
-// Signed distance from where v crosses the level, cells, positive where v is lower; far without a front. By near_x and
-// near_y, from run->v.
-void fill_distance(const fill_run* run, float* distance);
+// Signed distance from where v crosses the level, cells, positive where v is lower; far without a front. From run->v
+// into run->distance by near_x and near_y, where anybody asks.
+void fill_distance(const fill_run* run);
 // v of the field into run->v; in closed cells, two deep, what is next to them, so that no edge of theirs shows.
 void fill_take_v(const fill_run* run);
 
-// fill_auto.c: marks that follow the pattern and count for feed and kill, after fill_take_v.
+// fill_auto.c: marks that follow the pattern and count for feed and kill, after fill_take_v and fill_distance.
 bool fill_needs_distance(const fill_run* run);
 TY_CHECKED ty_status fill_auto_mark(fill_run* run, ty_error* error);
 
@@ -99,6 +102,11 @@ TY_CHECKED ty_status fill_state_load(fill_run* run, const ty_bytes* state, int* 
 static inline size_t fill_cell(const fill_run* run, int x, int y)
 {
     return (size_t)y * (size_t)run->width + (size_t)x;
+}
+// Of a cell's byte.
+static inline uint8_t fill_mark_of(uint8_t cell)
+{
+    return cell & (TY_GRAY_SCOTT_MARKS - 1);
 }
 static inline size_t fill_cells(const fill_run* run)
 {

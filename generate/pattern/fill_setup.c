@@ -170,7 +170,10 @@ static ty_status planes_make(fill_run* run, ty_error* error)
         }
     run->closed = TY_TRY_ALLOC(uint8_t, cells);
     run->v = TY_TRY_ALLOC(float, cells);
+    run->distance = fill_needs_distance(run) ? TY_TRY_ALLOC(float, cells) : NULL;
     run->cover = TY_TRY_ALLOC(float, cells);
+    run->layers = TY_TRY_ALLOC(uint8_t, cells);
+    run->mixed = TY_TRY_ALLOC(uint8_t, cells);
     run->near_x = TY_TRY_ALLOC(float, cells);
     run->near_y = TY_TRY_ALLOC(float, cells);
     run->trail = trail ? TY_TRY_ALLOC(float, cells) : NULL;
@@ -179,6 +182,7 @@ static ty_status planes_make(fill_run* run, ty_error* error)
     run->events = TY_TRY_ALLOC(ty_plane_file, run->recipe->events.count);
     run->keys = ty_try_alloc((size_t)keys, FILL_KEY);
     bool complete = run->closed && run->v && run->cover && run->near_x && run->near_y && run->events && run->keys;
+    complete = complete && run->layers && run->mixed && (!fill_needs_distance(run) || run->distance);
     complete = complete && (!trail || (run->trail && run->before)) && (run->recipe->variation == 0.0f || run->noise);
     for (size_t i = 0; complete && trail && i < cells; i++)
         run->trail[i] = -1.0f;
@@ -246,7 +250,7 @@ ty_status fill_vary(const fill_run* run, ty_error* error)
         const uint8_t* marks = ty_gray_scott_marks(run->field, y);
         for (int x = 0; x < run->width; x++)
         {
-            int mark = marks[x] & (TY_GRAY_SCOTT_MARKS - 1);
+            int mark = fill_mark_of(marks[x]);
             const ty_fill_seeding* seed = &run->marks[mark].seed;
             size_t at = fill_cell(run, x, y);
             float more = run->noise ? run->recipe->variation * run->noise[at] : 0.0f;
@@ -347,8 +351,11 @@ void fill_run_term(fill_run* run)
 {
     ty_gray_scott_destroy(run->field);
     ty_color_destroy(run->color);
-    void* const owned[] = {run->closed, run->v,      run->trail, run->before, run->cover,
-                           run->near_x, run->near_y, run->noise, run->events, run->keys};
+    void* const owned[] = {run->closed, run->v,      run->trail,  run->before, run->cover,  run->distance, run->layers,
+                           run->mixed,  run->near_x, run->near_y, run->noise,  run->events, run->keys};
+    for (int i = 0; i < 2 * TY_GRAY_SCOTT_MARKS; i++)
+        ty_planes_term(&run->stills[i / 2][i % 2]);
+    ty_planes_term(&run->still_over);
     for (int i = 0; i < (int)(sizeof owned / sizeof *owned); i++)
         ty_free(owned[i]);
 }

@@ -2,6 +2,7 @@
 // A frame of a fill as an image: colours through mattes, and the channels that were asked for.
 #include "fill_show.h"
 #include "fill_tables.h"
+#include "pattern_image.h"
 #include <string.h>
 #include <tsuya/base/memory.h>
 
@@ -52,22 +53,15 @@ static void map_tell(const fill_run* run, ty_exr* image)
 
 static void channels_add(fill_show_state* show, ty_exr* image)
 {
-    static const char* const names[] = {"R", "G", "B"};
-    static const float ap1[8] = TY_ACESCG_CHROMATICITIES;
     const fill_run* run = show->run;
-    bool grey = all_grey(run);
-    for (int c = 0; c < (grey ? 1 : 3); c++)
-        show->color[c] = ty_exr_add_channel(image, grey ? "Y" : names[c], TY_EXR_HALF);
-    if (!grey)
-        ty_exr_add_chromaticities(image, ap1);
     if (!all_opaque(run))
         show->alpha = ty_exr_add_channel(image, "A", TY_EXR_HALF);
     if (run->outputs.u)
-        show->u = ty_exr_add_channel(image, "u", TY_EXR_FLOAT);
+        show->u_out = ty_exr_add_channel(image, "u", TY_EXR_FLOAT);
     if (run->outputs.v)
-        show->v = ty_exr_add_channel(image, "v", TY_EXR_FLOAT);
+        show->v_out = ty_exr_add_channel(image, "v", TY_EXR_FLOAT);
     if (run->outputs.distance)
-        show->distance = ty_exr_add_channel(image, "distance", TY_EXR_FLOAT);
+        show->d_out = ty_exr_add_channel(image, "distance", TY_EXR_FLOAT);
     if (run->outputs.mark)
         show->mark = ty_exr_add_channel(image, "mark", TY_EXR_FLOAT);
     if (run->outputs.trail)
@@ -84,190 +78,126 @@ static void channels_add(fill_show_state* show, ty_exr* image)
 
 // --- planes ---
 
-static ty_status images_read(fill_show_state* show, ty_error* error)
+// Stills were read before; of sequences this frame's.
+static ty_status image_take(const fill_run* run, const ty_plane_file* file, const ty_planes* still, int number,
+                            ty_planes* read, const ty_planes** out, ty_error* error)
+{
+    ty_status status = TY_OK;
+    if (!file->path)
+        return TY_OK;
+    if (!still->values)
+        status = ty_plane_file_read_color(file, number, run->color, read, error);
+    *out = still->values ? still : read;
+    return status;
+}
+
+static ty_status images_take(fill_show_state* show, ty_error* error)
 {
     const fill_run* run = show->run;
     int number = show->frame + run->recipe->run.first - 1;
-    ty_status status = TY_OK;
-    if (run->over.path)
-        status = ty_plane_file_read_color(&run->over, number, run->color, &show->over, error);
+    ty_status status = image_take(run, &run->over, &run->still_over, number, &show->read_over, &show->over, error);
     for (int i = 0; i < 2 * run->mark_count && status == TY_OK; i++)
     {
-        const ty_plane_file* file = &run->images[i / 2][i % 2];
-        if (file->path)
-            status = ty_plane_file_read_color(file, number, run->color, &show->images[i / 2][i % 2], error);
+        int mark = i / 2, part = i % 2;
+        status = image_take(run, &run->images[mark][part], &run->stills[mark][part], number, &show->read[mark][part],
+                            &show->images[mark][part], error);
     }
     return status;
 }
 
-static void layers_take(fill_show_state* show)
+static void rules_take(fill_show_state* show)
 {
     const fill_run* run = show->run;
-    for (int y = 0; y < run->height; y++)
-    {
-        const uint8_t* marks = ty_gray_scott_marks(run->field, y);
-        for (int x = 0; x < run->width; x++)
-        {
-            size_t at = fill_cell(run, x, y);
-            show->layers[at] = run->closed[at] ? FILL_CLOSED : (uint8_t)(marks[x] & (TY_GRAY_SCOTT_MARKS - 1));
-        }
-    }
-    for (int y = 0; y < run->height; y++)
-        for (int x = 0; x < run->width; x++)
-            show->single[fill_cell(run, x, y)] = fill_is_single(show, x, y);
     const ty_fill_auto* autos = run->recipe->autos.items;
     for (int i = 0; i < run->recipe->autos.count; i++)
     {
         show->auto_marks[i] = fill_mark_find(run, autos[i].mark, "auto", NULL);
         show->auto_over[i] = autos[i].over ? fill_mark_find(run, autos[i].over, "auto", NULL) : -1;
+        show->rules_cover |= autos[i].where == TY_FILL_WHERE_HOLE || autos[i].where == TY_FILL_WHERE_FILLED;
     }
 }
 
-// Planes of the frame's size: those that are channels are there, the others are made; v is always wanted.
-static ty_status planes_fill(fill_show_state* show, float** made, ty_error* error)
+// What belongs to this frame alone. made: planes that nobody keeps.
+static ty_status frame_begin(fill_show_state* show, float* made[2], ty_error* error)
 {
     const fill_run* run = show->run;
+    int scale = run->recipe->scale, rules = run->recipe->autos.count;
     size_t pixels = (size_t)show->width * (size_t)show->height;
-    bool distance = fill_needs_distance(run), good = true;
-    made[0] = show->v ? NULL : TY_TRY_ALLOC(float, pixels);
-    made[1] = show->distance || !distance ? NULL : TY_TRY_ALLOC(float, pixels);
-    show->v = show->v ? show->v : made[0];
-    show->distance = show->distance ? show->distance : made[1];
-    show->layers = TY_TRY_ALLOC(uint8_t, fill_cells(run));
-    show->single = TY_TRY_ALLOC(bool, fill_cells(run));
-    show->auto_marks = TY_TRY_ALLOC(int, 2 * run->recipe->autos.count);
-    if (!show->v || (distance && !show->distance) || !show->layers || !show->single || !show->auto_marks)
+    bool good = cubic_axis_init(&show->across, run->width, scale, show->drift, run->wrap_x) &&
+                cubic_axis_init(&show->down, run->height, scale, 0.0f, run->wrap_y);
+    bool finer = !show->across.whole; // else pixels are the run's own cells
+    show->cell_x = TY_TRY_ALLOC(int, show->width);
+    show->auto_marks = TY_TRY_ALLOC(int, 2 * rules);
+    if (finer && !show->v_out)
+        show->v_out = made[0] = TY_TRY_ALLOC(float, pixels);
+    if (finer && run->distance && !show->d_out)
+        show->d_out = made[1] = TY_TRY_ALLOC(float, pixels);
+    show->v = finer ? show->v_out : run->v;
+    show->distance = finer ? show->d_out : run->distance;
+    if (!good || !show->cell_x || !show->auto_marks || !show->v || (run->distance && !show->distance))
         return ty_error_set(error, TY_NO_MEMORY, "no memory for a frame of %d x %d", show->width, show->height);
-    show->auto_over = show->auto_marks + run->recipe->autos.count;
-    layers_take(show);
-    good = fill_upsample(show, run->v, show->v);
-    if (distance && good)
+    show->auto_over = show->auto_marks + rules;
+    for (int x = 0; x < show->width; x++)
     {
-        fill_distance(run, run->cover);
-        good = fill_upsample(show, run->cover, show->distance);
+        int i = (int)floorf(((float)x + 0.5f) / (float)scale + show->drift);
+        show->cell_x[x] = cubic_neighbour(i, run->width, run->wrap_x);
     }
-    if (show->u && good)
-    {
-        for (int y = 0; y < run->height; y++)
-            memcpy(run->cover + fill_cell(run, 0, y), ty_gray_scott_u(run->field, y),
-                   (size_t)run->width * sizeof(float));
-        good = fill_upsample(show, run->cover, show->u);
-    }
-    return good ? TY_OK : ty_error_set(error, TY_INTERRUPTED, "interrupted while a frame was made");
+    rules_take(show);
+    return TY_OK;
 }
 
-// --- pixels ---
-
-static ty_rgb planes_at(const ty_planes* planes, size_t at)
-{
-    size_t size = (size_t)planes->width * (size_t)planes->height;
-    return (ty_rgb){planes->values[at], planes->values[at + size], planes->values[at + 2 * size]};
-}
-
-static ty_rgb layer_color(const fill_show_state* show, int mark, int part, size_t at)
-{
-    const ty_planes* image = &show->images[mark][part];
-    if (image->values)
-        return planes_at(image, at);
-    return part ? show->run->marks[mark].ground : show->run->marks[mark].color;
-}
-
-// Adds a layer's colour times its share; how much it covers.
-static float layer_add(const fill_show_state* show, int layer, float share, float tone, size_t at, ty_rgb* sum)
-{
-    const fill_run* run = show->run;
-    if (layer == FILL_CLOSED)
-    {
-        if (run->over.path)
-            return 0.0f;
-        *sum = ty_rgb_add(*sum, ty_rgb_scale(run->recipe->outside, share));
-        return share;
-    }
-    const ty_fill_mark* mark = &run->marks[layer];
-    float high = tone * mark->opacity, low = (1.0f - tone) * mark->ground_opacity;
-    ty_rgb color = layer_color(show, layer, 0, at), ground = layer_color(show, layer, 1, at);
-    if (mark->opacity == 1.0f && mark->ground_opacity == 1.0f)
-        color = ty_rgb_lerp(ground, color, tone);
-    else
-        color = ty_rgb_add(ty_rgb_scale(color, high), ty_rgb_scale(ground, low));
-    *sum = ty_rgb_add(*sum, ty_rgb_scale(color, share));
-    return share * (high + low);
-}
-
-static void pixel_paint(const fill_show_state* show, int x, int y, const float matte[FILL_LAYERS])
-{
-    const ty_fill_recipe* r = show->run->recipe;
-    size_t at = (size_t)y * (size_t)show->width + (size_t)x;
-    ty_rgb sum = {0.0f, 0.0f, 0.0f};
-    float covered = 0.0f, tone;
-    if (r->sharp)
-        tone = fill_coverage(show, x, y);
-    else
-        tone = ty_smoothstep(ty_clamp((show->v[at] - r->tone[0]) / (r->tone[1] - r->tone[0]), 0.0f, 1.0f));
-    for (int k = 0; k < FILL_LAYERS; k++)
-        if (matte[k] > 0.0f)
-            covered += layer_add(show, k, matte[k], tone, at, &sum);
-    if (show->over.values)
-        sum = ty_rgb_add(sum, ty_rgb_scale(planes_at(&show->over, at), 1.0f - covered));
-    const float values[3] = {sum.r, sum.g, sum.b};
-    for (int c = 0; c < 3; c++)
-        if (show->color[c])
-            show->color[c][at] = values[c];
-    if (show->alpha)
-        show->alpha[at] = covered;
-}
-
-static void rows_paint(void* context, int64_t begin, int64_t end, int worker)
+static void rows_upsample(void* context, int64_t begin, int64_t end, int worker)
 {
     const fill_show_state* show = context;
-    const fill_run* run = show->run;
+    const float* const cells[3] = {show->run->v, show->run->distance, show->run->cover};
+    float* const out[3] = {show->v_out, show->d_out, show->u_out};
     (void)worker;
+    float* line = TY_ALLOC(float, show->run->width + 2 * CUBIC_PAD);
     for (int y = (int)begin; y < (int)end; y++)
-        for (int x = 0; x < show->width; x++)
-        {
-            float matte[FILL_LAYERS];
-            int cx, cy;
-            size_t at = (size_t)y * (size_t)show->width + (size_t)x;
-            fill_matte(show, x, y, matte);
-            pixel_paint(show, x, y, matte);
-            for (int k = 0; k < FILL_LAYERS; k++)
-                if (show->mattes[k])
-                    show->mattes[k][at] = matte[k];
-            fill_pixel_cell(show, x, y, &cx, &cy);
-            size_t cell = fill_cell(run, cx, cy);
-            if (show->mark)
-                show->mark[at] = show->layers[cell] == FILL_CLOSED ? -1.0f : (float)show->layers[cell];
-            if (show->trail)
-                show->trail[at] = run->trail[cell];
-        }
+        for (int k = 0; k < 3; k++)
+            if (out[k])
+                cubic_row(&show->across, &show->down, cells[k], y, line, out[k] + (size_t)y * (size_t)show->width);
+    ty_free(line);
+}
+
+static bool planes_fill(fill_show_state* show)
+{
+    const fill_run* run = show->run;
+    for (int y = 0; y < run->height && show->u_out; y++)
+        memcpy(run->cover + fill_cell(run, 0, y), ty_gray_scott_u(run->field, y), (size_t)run->width * sizeof(float));
+    fill_layers_take(run);
+    return ty_parallel_for(run->workers, show->height, 16, rows_upsample, show);
+}
+
+static void show_term(fill_show_state* show)
+{
+    for (int i = 0; i < 2 * TY_GRAY_SCOTT_MARKS; i++)
+        ty_planes_term(&show->read[i / 2][i % 2]);
+    ty_planes_term(&show->read_over);
+    cubic_axis_term(&show->across);
+    cubic_axis_term(&show->down);
+    ty_free(show->cell_x);
+    ty_free(show->auto_marks);
 }
 
 ty_status fill_show(const fill_run* run, int frame, float drift, ty_exr** out, ty_error* error)
 {
-    fill_show_state show = {.run = run,
-                            .frame = frame,
-                            .width = run->width * run->recipe->scale,
-                            .height = run->height * run->recipe->scale,
-                            .drift = drift};
-    const int window[4] = {0, 0, show.width - 1, show.height - 1};
+    int scale = run->recipe->scale;
+    fill_show_state show = {
+        .run = run, .frame = frame, .width = run->width * scale, .height = run->height * scale, .drift = drift};
     float* made[2] = {NULL, NULL};
-    ty_exr* image = ty_exr_create(window, window);
+    ty_exr* image = pattern_image_create(show.width, show.height, all_grey(run), show.color);
     channels_add(&show, image);
     if (run->recipe->map.feed[1] > 0.0f)
         map_tell(run, image);
-    ty_status status = planes_fill(&show, made, error);
+    ty_status status = frame_begin(&show, made, error);
     if (status == TY_OK)
-        status = images_read(&show, error);
-    if (status == TY_OK && !ty_parallel_for(run->workers, show.height, 16, rows_paint, &show))
+        status = images_take(&show, error);
+    if (status == TY_OK && !(planes_fill(&show) && fill_paint(&show)))
         status = ty_error_set(error, TY_INTERRUPTED, "interrupted while a frame was made");
-    for (int i = 0; i < 2; i++)
-        ty_free(made[i]);
-    for (int i = 0; i < 2 * TY_GRAY_SCOTT_MARKS; i++)
-        ty_planes_term(&show.images[i / 2][i % 2]);
-    ty_planes_term(&show.over);
-    ty_free(show.layers);
-    ty_free(show.single);
-    ty_free(show.auto_marks);
+    ty_free(made[0]);
+    ty_free(made[1]);
+    show_term(&show);
     if (status != TY_OK)
     {
         ty_exr_destroy(image);

@@ -127,8 +127,7 @@ ty_exr* fill_state_save(const fill_run* run, int frame)
         memcpy(u + at, ty_gray_scott_u(run->field, y), row);
         memcpy(v + at, ty_gray_scott_v(run->field, y), row);
         for (int x = 0; x < run->width; x++)
-            cells[at + (size_t)x] =
-                (uint32_t)(marks[x] & (TY_GRAY_SCOTT_MARKS - 1)) | (uint32_t)run->closed[at + (size_t)x] << 8;
+            cells[at + (size_t)x] = fill_mark_of(marks[x]) | (uint32_t)run->closed[at + (size_t)x] << 8;
     }
     if (run->trail)
         memcpy(ty_exr_add_channel(state, "trail", TY_EXR_FLOAT), run->trail, fill_cells(run) * sizeof(float));

@@ -2,6 +2,7 @@
 // What a frame of a Turing filter shows: U against a threshold, calibrated by the tones that the cells were to have.
 #include "cubic.h"
 #include "filter_run.h"
+#include "pattern_image.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -158,33 +159,8 @@ typedef struct painting
     const ty_filter_run* run;
     const float* over[TY_FILTER_FIELDS]; // U over its threshold
     float* pixels;                       // three a pixel: linear Rec. 709, or of grey alone ACEScg
+    cubic_axis across, down;
 } painting;
-
-// The field's line through the middle of row y of the frame.
-static void line_blend(const ty_filter_run* run, const float* plane, int y, float* line)
-{
-    float at = ((float)y + 0.5f) / (float)run->recipe->scale - 0.5f, whole = floorf(at), weight[4];
-    bool wraps = run->recipe->edges == TY_TURING_WRAP;
-    cubic_weights(at - whole, weight);
-    memset(line, 0, (size_t)run->width * sizeof *line);
-    for (int k = 0; k < 4; k++)
-    {
-        const float* row = plane + (size_t)cubic_neighbour((int)whole - 1 + k, run->height, wraps) * (size_t)run->width;
-        for (int x = 0; x < run->width; x++)
-            line[x] += weight[k] * row[x];
-    }
-}
-
-// 0 = low, 1 = high.
-static float line_level(const ty_filter_run* run, const float* line, int x)
-{
-    const ty_filter_recipe* r = run->recipe;
-    float at = ((float)x + 0.5f) / (float)r->scale - 0.5f, whole = floorf(at), weight[4], over = 0.0f;
-    cubic_weights(at - whole, weight);
-    for (int k = 0; k < 4; k++)
-        over += weight[k] * line[cubic_neighbour((int)whole - 1 + k, run->width, r->edges == TY_TURING_WRAP)];
-    return level_of(r, over * (float)r->scale);
-}
 
 static void pixel_set(const ty_filter_run* run, const float level[3], size_t cell, float* out)
 {
@@ -207,21 +183,22 @@ static void rows_paint(void* context, int64_t begin, int64_t end, int worker)
     const ty_filter_run* run = p->run;
     (void)worker;
     int scale = run->recipe->scale, width = run->width * scale;
-    float* lines = TY_ALLOC(float, TY_FILTER_FIELDS * run->width);
+    float *line = TY_ALLOC(float, run->width + 2 * CUBIC_PAD), *over = TY_ALLOC(float, TY_FILTER_FIELDS*width);
     for (int y = (int)begin; y < (int)end; y++)
     {
         for (int f = 0; f < run->field_count; f++)
-            line_blend(run, p->over[f], y, lines + (size_t)f * (size_t)run->width);
+            cubic_row(&p->across, &p->down, p->over[f], y, line, over + (size_t)f * (size_t)width);
         for (int x = 0; x < width; x++)
         {
             float level[TY_FILTER_FIELDS] = {0};
             for (int f = 0; f < run->field_count; f++)
-                level[f] = line_level(run, lines + (size_t)f * (size_t)run->width, x);
+                level[f] = level_of(run->recipe, over[(size_t)f * (size_t)width + (size_t)x] * (float)scale);
             size_t cell = (size_t)(y / scale) * (size_t)run->width + (size_t)(x / scale);
             pixel_set(run, level, cell, p->pixels + 3 * ((size_t)y * (size_t)width + (size_t)x));
         }
     }
-    ty_free(lines);
+    ty_free(line);
+    ty_free(over);
 }
 
 static bool is_grey(const ty_filter_recipe* r)
@@ -252,21 +229,13 @@ static void fields_add(const ty_filter_run* run, ty_exr* frame)
 
 static ty_exr* frame_pack(const ty_filter_run* run, const float* pixels)
 {
-    static const char* const names[] = {"R", "G", "B"};
-    static const float ap1[8] = TY_ACESCG_CHROMATICITIES;
-    int scale = run->recipe->scale;
-    int window[4] = {0, 0, run->width * scale - 1, run->height * scale - 1};
-    ty_exr* frame = ty_exr_create(window, window);
-    bool grey = is_grey(run->recipe);
-    size_t size = (size_t)(window[2] + 1) * (size_t)(window[3] + 1);
-    for (int c = 0; c < (grey ? 1 : 3); c++)
-    {
-        float* out = ty_exr_add_channel(frame, grey ? "Y" : names[c], TY_EXR_HALF);
-        for (size_t i = 0; i < size; i++)
-            out[i] = pixels[3 * i + (size_t)c];
-    }
-    if (!grey)
-        ty_exr_add_chromaticities(frame, ap1);
+    int scale = run->recipe->scale, width = run->width * scale, height = run->height * scale;
+    float* color[3];
+    ty_exr* frame = pattern_image_create(width, height, is_grey(run->recipe), color);
+    size_t size = (size_t)width * (size_t)height;
+    for (int c = 0; c < 3; c++)
+        for (size_t i = 0; color[c] && i < size; i++)
+            color[c][i] = pixels[3 * i + (size_t)c];
     if (run->recipe->fields)
         fields_add(run, frame);
     return frame;
@@ -291,9 +260,11 @@ ty_status ty_filter_frame(const ty_filter_run* run, ty_exr** out, ty_error* erro
     size_t size = (size_t)run->width * (size_t)run->height, scale = (size_t)run->recipe->scale;
     float* over = TY_TRY_ALLOC(float, size*(size_t)run->field_count);
     painting p = {.run = run, .pixels = over ? TY_TRY_ALLOC(float, 3 * size * scale * scale) : NULL};
+    bool wraps = run->recipe->edges == TY_TURING_WRAP;
+    bool good = p.pixels && cubic_axis_init(&p.across, run->width, run->recipe->scale, 0.0f, wraps) &&
+                cubic_axis_init(&p.down, run->height, run->recipe->scale, 0.0f, wraps);
     ty_status status =
-        p.pixels ? TY_OK
-                 : ty_error_set(error, TY_NO_MEMORY, "no memory for a frame of %d x %d", run->width, run->height);
+        good ? TY_OK : ty_error_set(error, TY_NO_MEMORY, "no memory for a frame of %d x %d", run->width, run->height);
     for (int f = 0; f < run->field_count && status == TY_OK; f++)
     {
         float* plane = over + (size_t)f * size;
@@ -305,6 +276,8 @@ ty_status ty_filter_frame(const ty_filter_run* run, ty_exr** out, ty_error* erro
     }
     if (status == TY_OK)
         status = paint(&p, out, error);
+    cubic_axis_term(&p.across);
+    cubic_axis_term(&p.down);
     ty_free(p.pixels);
     ty_free(over);
     return status;

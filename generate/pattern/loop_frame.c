@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Slices to pictures: values, edges that cover pixels by shares, colours, moments of an open shutter.
 #include "loop_frame.h"
+#include "pattern_image.h"
 #include <string.h>
 #include <tsuya/base/memory.h>
 #include <tsuya/image/color.h>
@@ -239,17 +240,10 @@ const float* ty_loop_painter_coverage(const ty_loop_painter* painter)
 
 static ty_exr* image_make(ty_loop_painter* p)
 {
-    static const char* const names[] = {"R", "G", "B"};
-    static const float ap1[8] = TY_ACESCG_CHROMATICITIES;
-    const int window[4] = {0, 0, p->width - 1, p->height - 1};
-    ty_exr* image = ty_exr_create(window, window);
     bool grey = !p->volume->labels && !p->volume->tints && p->low.r == p->low.g && p->low.g == p->low.b &&
                 p->high.r == p->high.g && p->high.g == p->high.b;
-    for (int c = 0; c < 3; c++)
-        p->channels[c] = grey && c > 0 ? NULL : ty_exr_add_channel(image, grey ? "Y" : names[c], TY_EXR_HALF);
+    ty_exr* image = pattern_image_create(p->width, p->height, grey, p->channels);
     p->alpha = p->clear ? ty_exr_add_channel(image, "A", TY_EXR_HALF) : NULL;
-    if (!grey)
-        ty_exr_add_chromaticities(image, ap1);
     return image;
 }
 
