@@ -357,6 +357,9 @@ static void mattes_add_up(void** state)
                 sum += m;
             }
             assert_float_equal(sum, 1.0f, 1e-6f);
+            float d = channel(&f, 3, "distance")[i];
+            if (d > 0.6f && d < 2.4f && channel(&f, 3, names[4])[i] == 0.0f)
+                assert_true(channel(&f, 3, names[3])[i] > 0.999f); // all of the wall
         }
         for (int k = 0; k < 5; k++)
             assert_true(between[k] > 10); // edges are not cut
