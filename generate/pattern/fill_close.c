@@ -60,7 +60,7 @@ static ty_status hole_radius(const fill_run* run, int event, double* out, ty_err
         return status;
     for (size_t i = 0; i < fill_cells(run); i++)
     {
-        bool filled = run->cover[i] < 0.5f;
+        bool filled = run->cover[i] <= 0.5f;
         run->near_x[i] = filled ? (float)(i % (size_t)run->width) : NAN;
         run->near_y[i] = filled ? (float)(i / (size_t)run->width) : NAN;
     }

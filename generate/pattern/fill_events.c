@@ -5,11 +5,6 @@
 #include <tsuya/base/log.h>
 #include <tsuya/base/memory.h>
 
-static int event_end(const ty_fill_event* e)
-{
-    return e->until > e->at ? e->until : e->at;
-}
-
 // --- opening and closing ---
 
 static void cell_set(const fill_run* run, size_t at, float u, float v)
@@ -128,15 +123,17 @@ static void spots_drop(const fill_run* run, const ty_fill_seeding* seeding)
 
 // --- events ---
 
-// Soft edges of what is or is not: by chance, the same for equal cells and events.
+// Soft edges of what is or is not: by chance, the same for equal cells and events. Sharp ones: by the cell's middle.
 static void cover_decide(const fill_run* run, int event)
 {
+    const ty_fill_event* e = (const ty_fill_event*)run->recipe->events.items + event;
     ty_seed seed = {run->recipe->seed.value};
     for (size_t i = 0; i < fill_cells(run); i++)
         if (run->cover[i] > 0.0f && run->cover[i] < 1.0f)
         {
             ty_rng rng = ty_rng_make(seed, 0x65646765 + (uint64_t)event, (uint64_t)i);
-            run->cover[i] = ty_rng_float(&rng) < run->cover[i] ? 1.0f : 0.0f;
+            float threshold = e->feather > 0.0f ? ty_rng_float(&rng) : 0.5f;
+            run->cover[i] = threshold < run->cover[i] ? 1.0f : 0.0f;
         }
 }
 
@@ -239,7 +236,7 @@ ty_status fill_frame_events(fill_run* run, int frame, ty_error* error)
     for (int i = 0; i < run->recipe->events.count && status == TY_OK; i++)
     {
         const ty_fill_event* e = &events[i];
-        if (frame < e->at || frame > event_end(e))
+        if (frame < e->at || frame > fill_event_end(e))
             continue;
         int mark = e->mark ? fill_mark_find(run, e->mark, "events", error) : -1;
         status = fill_shape_cover(run, i, frame, error);
@@ -283,8 +280,7 @@ static ty_status event_check(const fill_run* run, int index, ty_error* error)
     if (e->op == TY_FILL_FILL && run->plain[of].y == 0.0f)
         ty_log(TY_LOG_WARNING,
                "events[%d]: fill; with feed %g there is a plain state up to kill %.5f, not with %g: u 1 and v 0", index,
-               (double)run->rates[of].feed, (double)(0.5f * sqrtf(run->rates[of].feed) - run->rates[of].feed),
-               (double)run->rates[of].kill);
+               (double)run->rates[of].feed, (double)fill_plain_limit(run->rates[of]), (double)run->rates[of].kill);
     return TY_OK;
 }
 

@@ -36,7 +36,7 @@ static ty_status events_open(fill_run* run, int last, ty_error* error)
     for (int i = 0; i < run->recipe->events.count && status == TY_OK; i++)
     {
         const ty_fill_event* e = &events[i];
-        int until = e->until > e->at ? e->until : e->at;
+        int until = fill_event_end(e);
         snprintf(run->keys[i], FILL_KEY, "events[%d].image", i);
         if (e->shape == TY_FILL_IMAGE)
             status = file_open(run, e->image, run->keys[i], e->at, until < last ? until : last, true, &run->events[i],

@@ -199,7 +199,7 @@ static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_err
 
 const ty_generator ty_fill_generator = {
     .kind = "fill",
-    .build_id = "fill 2",
+    .build_id = "fill 3",
     .product = TY_PRODUCT_FRAMES,
     .params = &ty_fill_recipe_table,
     .frame_count = frame_count,

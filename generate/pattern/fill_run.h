@@ -103,6 +103,15 @@ static inline size_t fill_cell(const fill_run* run, int x, int y)
 {
     return (size_t)y * (size_t)run->width + (size_t)x;
 }
+static inline int fill_event_end(const ty_fill_event* e)
+{
+    return e->until > e->at ? e->until : e->at;
+}
+// The kill up to which there is a plain state.
+static inline float fill_plain_limit(ty_gray_scott_rates rates)
+{
+    return 0.5f * sqrtf(rates.feed) - rates.feed;
+}
 // Of a cell's byte.
 static inline uint8_t fill_mark_of(uint8_t cell)
 {

@@ -148,8 +148,7 @@ static ty_status recipe_check(const fill_run* run, ty_error* error)
     if (r->start == TY_PATTERN_START_PLAIN && run->plain[0].y == 0.0f)
         ty_log(TY_LOG_WARNING,
                "start: plain; with feed %g there is a plain state up to kill %.5f, not with %g: it begins empty",
-               (double)run->rates[0].feed, (double)(0.5f * sqrtf(run->rates[0].feed) - run->rates[0].feed),
-               (double)run->rates[0].kill);
+               (double)run->rates[0].feed, (double)fill_plain_limit(run->rates[0]), (double)run->rates[0].kill);
     return r->run.frames > 0 ? TY_OK : loop_check(r, error);
 }
 

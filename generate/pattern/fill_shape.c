@@ -157,24 +157,44 @@ static float roughness(const ty_fill_seeding* seeding, float x, float y)
     return seeding->rough * 1.5f * ty_value_noise((ty_vec3){x / BUMP, y / BUMP, 0.5f}, seed);
 }
 
+typedef struct covering
+{
+    const fill_run* run;
+    const shape* shape;
+    const ty_fill_seeding* seeding; // whose outlines are rough; NULL = none
+    float feather;
+} covering;
+
+static void rows_cover(void* context, int64_t begin, int64_t end, int worker)
+{
+    const covering* c = context;
+    const fill_run* run = c->run;
+    (void)worker;
+    for (int y = (int)begin; y < (int)end; y++)
+        for (int x = 0; x < run->width; x++)
+        {
+            float px = (float)x + 0.5f, py = (float)y + 0.5f, d = wrapped_distance(run, c->shape, px, py);
+            if (c->seeding)
+                d += roughness(c->seeding, px, py);
+            run->cover[fill_cell(run, x, y)] = share(d, c->feather);
+        }
+}
+
 ty_status fill_shape_cover(const fill_run* run, int event, int frame, ty_error* error)
 {
     const ty_fill_event* e = (const ty_fill_event*)run->recipe->events.items + event;
     ty_status status = TY_OK;
     int mark = e->mark ? fill_mark_find(run, e->mark, "events", error) : 0;
     const ty_fill_seeding* seeding = &run->marks[mark < 0 ? 0 : mark].seed;
+    bool rough = e->mark && seeding->rough > 0.0f && e->shape != TY_FILL_ALL;
+    // What u and v are set to covers cells at an outline by their shares, else frames would show stairs.
+    bool blends = e->op == TY_FILL_HOLE || e->op == TY_FILL_FILL;
     shape s = shape_at(e, frame);
+    covering c = {run, &s, rough ? seeding : NULL, e->feather == 0.0f && blends ? 1.0f : e->feather};
     if (e->shape == TY_FILL_IMAGE)
         status = image_cover(run, event, frame, error);
     else
-        for (int y = 0; y < run->height; y++)
-            for (int x = 0; x < run->width; x++)
-            {
-                float px = (float)x + 0.5f, py = (float)y + 0.5f, d = wrapped_distance(run, &s, px, py);
-                if (e->mark && seeding->rough > 0.0f && e->shape != TY_FILL_ALL)
-                    d += roughness(seeding, px, py);
-                run->cover[fill_cell(run, x, y)] = share(d, e->feather);
-            }
+        ty_parallel_all(run->workers, run->height, 16, rows_cover, &c);
     for (size_t i = 0; e->invert && status == TY_OK && i < fill_cells(run); i++)
         run->cover[i] = 1.0f - run->cover[i];
     return status;
