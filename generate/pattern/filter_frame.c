@@ -13,7 +13,7 @@ enum
     TONES = 32,
     LEVELS = 512,
     ENOUGH = 4096, // cells that tell a threshold
-    CORRECTIONS = 4
+    CORRECTIONS = 6
 };
 
 // --- thresholds ---
@@ -36,7 +36,7 @@ static int slot(float x, int count)
     return i < 0 ? 0 : i >= count ? count - 1 : i;
 }
 
-static void cells_count(const ty_filter_run* run, int field, const float* u, calibration* c)
+static void cells_count(const ty_filter_run* run, const float* tone, const float* u, calibration* c)
 {
     size_t size = (size_t)run->width * (size_t)run->height;
     c->low = INFINITY;
@@ -50,7 +50,7 @@ static void cells_count(const ty_filter_run* run, int field, const float* u, cal
     float step = c->high > c->low ? 1.0f / (c->high - c->low) : 0.0f;
     for (size_t i = 0; i < size; i++)
         if (lives(run, i))
-            c->cells[slot(run->picture.tone[field][i], TONES)][slot((u[i] - c->low) * step, LEVELS)]++;
+            c->cells[slot(tone[i], TONES)][slot((u[i] - c->low) * step, LEVELS)]++;
 }
 
 // Counts at a level of the tones up to `reach` from this one, the nearer the more.
@@ -108,23 +108,47 @@ static float level_of(const ty_filter_recipe* r, float over)
 }
 
 // Where the pattern of a place is brighter than its tones, thresholds rise there, and the other way.
-static ty_status correct_places(const ty_filter_run* run, int field, float* over, ty_error* error)
+static void correct_places(const ty_filter_run* run, const float* tone, float* over, float* scratch)
 {
-    const float gain = 2.0f, sigma = 4.0f * sqrtf(2.0f * ty_filter_turing_def(run->recipe).v.diffusion); // 0.4 spots
+    const float gain = 3.0f, sigma = 4.0f * sqrtf(2.0f * ty_filter_turing_def(run->recipe).v.diffusion); // 0.4 spots
     size_t size = (size_t)run->width * (size_t)run->height;
-    float* lack = TY_TRY_ALLOC(float, 2 * size);
-    if (!lack)
-        return ty_error_set(error, TY_NO_MEMORY, "no memory for a frame");
+    float* lack = scratch + size;
     for (int pass = 0; pass < CORRECTIONS; pass++)
     {
         for (size_t i = 0; i < size; i++)
-            lack[i] = lives(run, i) ? run->picture.tone[field][i] - level_of(run->recipe, over[i]) : 0.0f;
-        ty_filter_blur(lack, lack + size, run->width, run->height, sigma);
+            lack[i] = lives(run, i) ? tone[i] - level_of(run->recipe, over[i]) : 0.0f;
+        ty_filter_blur(lack, scratch, run->width, run->height, sigma, run->workers);
         for (size_t i = 0; i < size; i++)
             over[i] += gain * lack[i];
     }
-    ty_free(lack);
-    return TY_OK;
+}
+
+// Each tone's thresholds give its share of bright cells. Grain of the picture would move them from frame to frame: they
+// follow its blurred tones.
+static ty_status calibrate(const ty_filter_run* run, int field, float* u, ty_error* error)
+{
+    const ty_filter_recipe* r = run->recipe;
+    size_t size = (size_t)run->width * (size_t)run->height;
+    float* tone = TY_TRY_ALLOC(float, 3 * size);
+    calibration* c = TY_TRY_ALLOC(calibration, 1);
+    if (tone && c)
+    {
+        memcpy(tone, run->picture.tone[field], size * sizeof *tone);
+        if (r->tone.smoothing > 0.0f)
+            ty_filter_blur(tone, tone + size, run->width, run->height, r->tone.smoothing, run->workers);
+        cells_count(run, tone, u, c);
+        for (int t = 0; t < TONES; t++)
+            c->above[t] = quantile(c, t);
+        for (size_t i = 0; i < size; i++)
+        {
+            float threshold = threshold_at(c, tone[i], r->softness);
+            u[i] -= run->alive ? ty_lerp(r->threshold, threshold, run->alive[i]) : threshold;
+        }
+        correct_places(run, tone, u, tone + size);
+    }
+    ty_free(c);
+    ty_free(tone);
+    return tone && c ? TY_OK : ty_error_set(error, TY_NO_MEMORY, "no memory for a frame");
 }
 
 // U over the threshold of its cell, in place.
@@ -132,24 +156,11 @@ static ty_status over_threshold(const ty_filter_run* run, int field, float* u, t
 {
     const ty_filter_recipe* r = run->recipe;
     size_t size = (size_t)run->width * (size_t)run->height;
-    calibration* c = NULL;
-    const bool calibrated = r->mode == TY_FILTER_TONE && r->tone.calibrated;
-    if (calibrated)
-    {
-        c = TY_TRY_ALLOC(calibration, 1);
-        if (!c)
-            return ty_error_set(error, TY_NO_MEMORY, "no memory for a frame");
-        cells_count(run, field, u, c);
-        for (int t = 0; t < TONES; t++)
-            c->above[t] = quantile(c, t);
-    }
+    if (r->mode == TY_FILTER_TONE && r->tone.calibrated)
+        return calibrate(run, field, u, error);
     for (size_t i = 0; i < size; i++)
-    {
-        float threshold = c ? threshold_at(c, run->picture.tone[field][i], r->softness) : r->threshold;
-        u[i] -= run->alive ? ty_lerp(r->threshold, threshold, run->alive[i]) : threshold;
-    }
-    ty_free(c);
-    return calibrated ? correct_places(run, field, u, error) : TY_OK;
+        u[i] -= r->threshold;
+    return TY_OK;
 }
 
 // --- pixels ---

@@ -6,42 +6,7 @@
 #include <string.h>
 #include <tsuya/base/memory.h>
 
-// --- blurring ---
-
-static void line_blur(const float* in, float* out, int n, int64_t stride, const float* weights, int reach)
-{
-    for (int i = 0; i < n; i++)
-    {
-        float sum = weights[0] * in[i * stride];
-        for (int k = 1; k <= reach; k++)
-        {
-            int before = i - k > 0 ? i - k : 0, after = i + k < n ? i + k : n - 1;
-            sum += weights[k] * (in[before * stride] + in[after * stride]);
-        }
-        out[i * stride] = sum;
-    }
-}
-
-void ty_filter_blur(float* plane, float* scratch, int width, int height, float sigma)
-{
-    enum
-    {
-        MOST = 200 // 4 sigma of 50 cells
-    };
-    float weights[MOST + 1], sum = 0.0f;
-    int reach = (int)ceilf(ty_min(4.0f * sigma, (float)MOST));
-    for (int k = 0; k <= reach; k++)
-    {
-        weights[k] = ty_exp(-0.5f * ty_sqr((float)k / sigma));
-        sum += k ? 2.0f * weights[k] : weights[k];
-    }
-    for (int k = 0; k <= reach; k++)
-        weights[k] /= sum;
-    for (int y = 0; y < height; y++)
-        line_blur(plane + (size_t)y * (size_t)width, scratch + (size_t)y * (size_t)width, width, 1, weights, reach);
-    for (int x = 0; x < width; x++)
-        line_blur(scratch + x, plane + x, height, width, weights, reach);
-}
+// --- slopes ---
 
 // Central differences of the blurred first tone. x and y: [height][width].
 static void gradient(const ty_filter_run* run, float sigma, float* x, float* y, float* scratch)
@@ -49,7 +14,7 @@ static void gradient(const ty_filter_run* run, float sigma, float* x, float* y, 
     int w = run->width, h = run->height;
     size_t size = (size_t)w * (size_t)h;
     memcpy(y, run->picture.tone[0], size * sizeof *y);
-    ty_filter_blur(y, x, w, h, sigma);
+    ty_filter_blur(y, x, w, h, sigma, run->workers);
     memcpy(scratch, y, size * sizeof *y);
     for (int j = 0; j < h; j++)
         for (int i = 0; i < w; i++)
@@ -238,9 +203,9 @@ static void structure_tensor(const ty_filter_run* run, float* xx, float* yy, flo
         yy[i] = y * y;
         xy[i] = x * y;
     }
-    ty_filter_blur(xx, scratch, run->width, run->height, a->spread);
-    ty_filter_blur(yy, scratch, run->width, run->height, a->spread);
-    ty_filter_blur(xy, scratch, run->width, run->height, a->spread);
+    ty_filter_blur(xx, scratch, run->width, run->height, a->spread, run->workers);
+    ty_filter_blur(yy, scratch, run->width, run->height, a->spread, run->workers);
+    ty_filter_blur(xy, scratch, run->width, run->height, a->spread, run->workers);
 }
 
 static ty_status along_guide(ty_filter_run* run, ty_error* error)

@@ -67,13 +67,14 @@ static ty_status frame_make(ty_filter_run* run, int frame, bool resumed, const t
     bool anew = starts_anew(run, frame) && !resumed;
     run->frame = frame;
     run->step = anew ? 0 : run->step;
-    if (!run->picture.tone[0] || run->sequence)
+    bool first = !run->picture.tone[0];
+    if (first || run->moves)
     {
         ty_filter_picture_term(&run->picture);
         status = ty_filter_picture_read(run, frame, &run->picture, error);
-        if (status == TY_OK)
-            status = ty_filter_guide(run, frame, error);
     }
+    if (status == TY_OK && (first || run->sequence))
+        status = ty_filter_guide(run, frame, error);
     for (int f = 0; f < run->field_count && status == TY_OK && anew; f++)
         field_begin(run, f);
     run->begun |= status == TY_OK;
@@ -134,7 +135,7 @@ static ty_status image_open(ty_filter_run* run, ty_error* error)
 {
     const ty_filter_recipe* r = run->recipe;
     run->frame_count = ty_filter_generator.frame_count(r);
-    run->sequence = r->image && ty_path_is_sequence(r->image);
+    run->sequence = run->moves = r->image && ty_path_is_sequence(r->image);
     for (int i = 0; i < r->regions.count; i++)
         run->sequence |= ty_path_is_sequence(((const ty_filter_region*)r->regions.items)[i].mask);
     if (!r->image)

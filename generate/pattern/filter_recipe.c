@@ -48,7 +48,7 @@ ty_filter_recipe ty_filter_recipe_default(void)
         .u = field.u,
         .v = field.v,
         .size = 1.0f,
-        .tone = {{0.0f, 0.2f}, true, false},
+        .tone = {{0.0f, 0.2f}, true, false, 1.0f},
         .limit = {0, 4.0f, false},
         .edge_value = {5.0f, 0.0f},
         .contours = {0.0f, 1.0f, 1.0f, {5.0f, 0.0f}},
@@ -104,6 +104,8 @@ static const ty_param tone_rows[] = {
     FIELD("range", TY_PARAM_FLOAT2, "", -1, 1, range, "the activator's constant where the image is black, and white"),
     FIELD("calibrated", TY_PARAM_BOOL, "", 0, 0, calibrated, "each tone's threshold gives its share of bright cells"),
     FIELD("displayed", TY_PARAM_BOOL, "", 0, 0, displayed, "tones are values as shown (sRGB), not amounts of light"),
+    FIELD("smoothing", TY_PARAM_FLOAT, "cells", 0, 50, smoothing,
+          "of the Gaussian over tones before their thresholds, so that grain does not flicker; 0 = none"),
 };
 TABLE(tone_table, "filter.tone", "How the image steers the pattern, with mode tone.", tone_rows);
 #undef OWNER
@@ -256,7 +258,7 @@ static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_err
 
 const ty_generator ty_filter_generator = {
     .kind = "filter",
-    .build_id = "filter 1",
+    .build_id = "filter 2",
     .product = TY_PRODUCT_FRAMES,
     .params = &recipe_table,
     .frame_count = frame_count,

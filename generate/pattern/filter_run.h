@@ -31,7 +31,7 @@ typedef struct ty_filter_run
     ty_color* color;
     ty_plane_file image;
     ty_filter_mask* masks; // of the regions
-    bool sequence;         // the image is one, or a mask
+    bool moves, sequence;  // the image is one; it is, or a mask
     int width, height, frame_count;
     ty_filter_picture picture; // of the frame
     float* alive;              // how much the pattern lives in each cell, 0..1; NULL = everywhere
@@ -60,8 +60,9 @@ void ty_filter_picture_term(ty_filter_picture* picture); // zeroed ones are allo
 TY_CHECKED ty_status ty_filter_masks_open(ty_filter_run* run, ty_error* error);
 // What masks and the picture set in the fields for a frame; into alive as well.
 TY_CHECKED ty_status ty_filter_guide(ty_filter_run* run, int frame, ty_error* error);
-// Gaussian over [height][width], its rim repeated. scratch: of the same size.
-void ty_filter_blur(float* plane, float* scratch, int width, int height, float sigma);
+
+// filter_blur.c: a Gaussian over [height][width], its rim repeated. scratch: of the same size.
+void ty_filter_blur(float* plane, float* scratch, int width, int height, float sigma, ty_workers* workers);
 
 // filter_frame.c: the frame that the fields show now. *out is the caller's.
 TY_CHECKED ty_status ty_filter_frame(const ty_filter_run* run, ty_exr** out, ty_error* error);

@@ -66,7 +66,7 @@ expect 0 "$tsuya" filter filter.yaml -o early.exr --state state.exr
 expect 0 "$tsuya" filter filter.yaml -o late.exr --set time=150
 expect 0 "$tsuya" filter filter.yaml -o resumed.exr --set time=150 --resume state.exr
 same late.exr resumed.exr
-expect 130 timeout --preserve-status -s INT 1 "$tsuya" filter filter.yaml -o stopped.exr --set time=1000000 \
+expect 130 timeout --preserve-status -s INT 3 "$tsuya" filter filter.yaml -o stopped.exr --set time=1000000 \
     --set 'cells=[600,600]' --state state.exr
 says "interrupted at step"
 absent stopped.exr

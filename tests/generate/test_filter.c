@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Turing filter: pictures stay, edges stay for a while, colours keep their means, masks and lines hold.
 #include "filter_frames.h"
+#include <tsuya/image/color.h>
 
 // --- how much of a picture is there ---
 
@@ -41,7 +42,8 @@ static float light_of(float shown)
 }
 
 // Between local means of the light in an image file and of what a frame shows: cells above the middle are white.
-static double tone_correlation(const char* path, const ty_image* frame)
+// channel: of both, or -1 of the luminance and the first.
+static double tone_correlation(const char* path, const ty_image* frame, int channel)
 {
     ty_image image;
     ty_error error;
@@ -53,8 +55,9 @@ static double tone_correlation(const char* path, const ty_image* frame)
     {
         static const float weights[3] = {0.2126f, 0.7152f, 0.0722f};
         for (int c = 0; c < 3; c++)
-            a[i] += (double)(weights[c] * light_of(image.pixels[i * image.channels + c]));
-        b[i] = frame->pixels[i * frame->channels] > 0.5f;
+            a[i] += (channel < 0 ? (double)weights[c] : (double)(channel == c)) *
+                    (double)light_of(image.pixels[i * image.channels + c]);
+        b[i] = frame->pixels[i * frame->channels + (channel < 0 ? 0 : channel)] > 0.5f;
     }
     blur(a, image.width, image.height);
     blur(b, image.width, image.height);
@@ -76,13 +79,42 @@ static void a_picture_stays_in_tone_mode(void** state)
         frames out = {0};
         recipe.tone.calibrated = c;
         make(&recipe, &out);
-        double early = tone_correlation(recipe.image, &out.images[1]);
-        double late = tone_correlation(recipe.image, &out.images[3]);
+        double early = tone_correlation(recipe.image, &out.images[1], -1);
+        double late = tone_correlation(recipe.image, &out.images[3], -1);
         print_message("calibrated %d: %.4f at 2000, %.4f at 6000\n", c, early, late);
         assert_true(early > (c ? 0.98 : 0.88) && late > (c ? 0.98 : 0.88));
         assert_true(early < (c ? 1.0 : 0.95)); // it is the calibration that does it
         forget(&out);
     }
+}
+
+static void each_channel_of_a_picture_stays(void** state)
+{
+    (void)state;
+    ty_color* color;
+    ty_error error;
+    frames out = {0};
+    ty_filter_recipe recipe = photo();
+    recipe.color = TY_FILTER_CHANNELS;
+    recipe.frames = 2;
+    recipe.time_per_frame = 4000.0f;
+    make(&recipe, &out);
+    assert_int_equal(ty_color_create(NULL, &color, &error), TY_OK);
+    for (int f = 1; f <= 2; f++)
+    {
+        ty_image* image = &out.images[f];
+        assert_int_equal(
+            ty_color_convert(color, "ACEScg", "lin_rec709", image->pixels, image->width * image->height, 3, &error),
+            TY_OK);
+        for (int c = 0; c < 3; c++)
+        {
+            double r = tone_correlation(recipe.image, image, c);
+            print_message("channel %d: %.4f at %d\n", c, r, f == 1 ? 2000 : 6000);
+            assert_true(r > 0.95 && r < 1.0);
+        }
+    }
+    ty_color_destroy(color);
+    forget(&out);
 }
 
 // Of a frame's first channel: how steep it is, blurred, against how steep the picture is.
@@ -258,9 +290,10 @@ static void contours_are_lines_of_fixed_values(void** state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_picture_stays_in_tone_mode), cmocka_unit_test(limits_keep_edges_at_first),
-        cmocka_unit_test(means_of_colours_are_kept),    cmocka_unit_test(channels_of_a_grey_picture_are_grey),
-        cmocka_unit_test(masks_hold_their_values),      cmocka_unit_test(contours_are_lines_of_fixed_values),
+        cmocka_unit_test(a_picture_stays_in_tone_mode),        cmocka_unit_test(each_channel_of_a_picture_stays),
+        cmocka_unit_test(limits_keep_edges_at_first),          cmocka_unit_test(means_of_colours_are_kept),
+        cmocka_unit_test(channels_of_a_grey_picture_are_grey), cmocka_unit_test(masks_hold_their_values),
+        cmocka_unit_test(contours_are_lines_of_fixed_values),
     };
     return cmocka_run_group_tests(tests, folder_setup, folder_teardown);
 }

@@ -33,6 +33,7 @@ typedef struct ty_filter_tone
     float range[2];  // cu of black and of white
     bool calibrated; // each tone gets the threshold that gives its share of bright cells
     bool displayed;  // the tone is the value shown, encoded as sRGB is; else its light
+    float smoothing; // cells: of the Gaussian over tones before their thresholds
 } ty_filter_tone;
 
 typedef struct ty_filter_limit
