@@ -154,8 +154,8 @@ static bool read_input_source(ty_reader* reader, ty_node* node, const ty_param* 
 
 bool ty_param_read_input(ty_reader* reader, ty_node* node, const ty_param* row, ty_input* out)
 {
-    static const char* const keys[] = {"texture", "attribute", "value", "scale", "offset",  "mapping", "uv",
-                                       "channel", "size",      "blend", "wrap",  "product", NULL};
+    static const char* const keys[] = {"texture", "attribute", "value", "scale", "offset", "mapping", "uv",
+                                       "channel", "space",     "size",  "blend", "wrap",   "product", NULL};
     static const char* const of_attribute[] = {"attribute", "value", "scale", "offset", "product", NULL};
     *out = ty_input_scalar(1.0f);
     bool is_color = row->type == TY_PARAM_COLOR_INPUT;

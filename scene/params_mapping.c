@@ -3,7 +3,8 @@
 #include "params_read.h"
 #include <string.h>
 
-static const char* const mappings[] = {"uv", "triplanar", NULL};
+static const char* const mappings[] = {"uv", "triplanar", "planar", NULL};
+static const char* const spaces[] = {"object", "world", NULL};
 static const char* const wraps[] = {"repeat", "clamp", "mirror", NULL};
 static const char* const channels[] = {"all", "r", "g", "b", "a", "luminance", NULL};
 
@@ -47,6 +48,7 @@ static const ty_param_table placement_table = {.name = "uv",
 
 static const ty_param rows[] = {
     {.name = "mapping", .type = TY_PARAM_ENUM, .unit = "", .choices = mappings, .offset = offsetof(ty_input, mapping)},
+    {.name = "space", .type = TY_PARAM_ENUM, .unit = "", .choices = spaces, .offset = offsetof(ty_input, space)},
     {.name = "size",
      .type = TY_PARAM_FLOAT,
      .unit = "m",
@@ -100,10 +102,11 @@ bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* inp
         if (!value)
             continue;
         good &= ty_param_read(reader, value, &rows[i], (char*)input + rows[i].offset);
-        if (i > 0 && input->mapping != TY_MAPPING_TRIPLANAR)
+        bool blends = rows[i].offset == offsetof(ty_input, blend);
+        if (i > 0 && input->mapping != TY_MAPPING_TRIPLANAR && (blends || input->mapping != TY_MAPPING_PLANAR))
         {
-            ty_report(reader->errors, value->place, TY_BAD_INPUT, "'%s' means nothing without 'mapping: triplanar'",
-                      rows[i].name);
+            ty_report(reader->errors, value->place, TY_BAD_INPUT, "'%s' means nothing without 'mapping: triplanar'%s",
+                      rows[i].name, blends ? "" : " or 'planar'");
             good = false;
         }
     }

@@ -112,9 +112,10 @@ static const char FILES[] =
     "`uv: { scale, offset, rotate }`: the texture is looked up at offset + rotated (scale * uv), degrees "
     "counter-clockwise; and `mapping: triplanar`, which needs no texture coordinates: the texture is projected along "
     "the "
-    "axes of the object's own space, `size` metres a repetition (0.1), the three directions reaching into one another "
-    "by "
-    "`blend` (0.3; 0..1). Colours are converted from the space of the file: what the asset's `color_space` says, else "
+    "axes of the object's own space (of each instance's), or with `space: world` of the scene's, `size` metres a "
+    "repetition (0.1), the three directions reaching into one another by `blend` (0.3; 0..1). `mapping: planar` "
+    "projects along y alone, from above, x to the right and -z up. Colours are converted from the space of the file: "
+    "what the asset's `color_space` says, else "
     "what the file says, else sRGB for integers and linear Rec.709 for floats; numbers are taken as they are. Textures "
     "are converted once, into the folder of made assets; `--texture-cache` limits what of them is in memory.\n";
 

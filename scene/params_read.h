@@ -37,7 +37,8 @@ bool ty_param_read_number(ty_reader* reader, const ty_node* node, const ty_param
 // The numbers of a list of exactly count; false after a report.
 bool ty_param_read_numbers(ty_reader* reader, const ty_node* node, const ty_param* row, float* out, int count);
 bool ty_param_read_rgb(ty_reader* reader, ty_node* node, const ty_param* row, ty_rgb* out);
-// mapping, uv, channel, size and blend of an input that has a texture; *layer: a channel that is none of the picture's.
+// mapping, uv, channel, space, size and blend of an input that has a texture; *layer: a channel that is none of the
+// picture's.
 bool ty_param_read_mapping(ty_reader* reader, const ty_node* node, ty_input* input, int wrap[2], const ty_node** layer);
 bool ty_param_read_input(ty_reader* reader, ty_node* node, const ty_param* row, ty_input* out);
 // Reports every key of a mapping that is not among keys (NULL-terminated); of = what the mapping is.

@@ -62,7 +62,8 @@ static void add_input(ty_text* out, const ty_param* row)
         add_number(out, row, "number");
     static const char mapping[] =
         ", \"uv\": {\"type\": \"object\", \"properties\": {\"scale\": {}, \"offset\": {}, \"rotate\": {}}, "
-        "\"additionalProperties\": false}, \"mapping\": {\"enum\": [\"uv\", \"triplanar\"]}, \"size\": {\"type\": "
+        "\"additionalProperties\": false}, \"mapping\": {\"enum\": [\"uv\", \"triplanar\", \"planar\"]}, \"space\": "
+        "{\"enum\": [\"object\", \"world\"]}, \"size\": {\"type\": "
         "\"number\"}, \"blend\": {\"type\": \"number\"}, \"channel\": {\"type\": \"string\", "
         "\"examples\": [\"all\", \"r\", \"g\", \"b\", \"a\", \"luminance\", \"v\"]}, \"wrap\": {\"anyOf\": [{\"enum\": "
         "[\"repeat\", \"clamp\", \"mirror\"]}, {\"type\": "

@@ -46,9 +46,9 @@ static lookup by_uv(const ty_shading_context* context, const ty_surface_point* p
     return l;
 }
 
-// --- triplanar ---
+// --- along axes ---
 
-// The point in the object's space, in repetitions of the texture.
+// The point in the space whose axes count, in repetitions of the texture.
 typedef struct local_point
 {
     ty_vec3 position, normal, footprint[2];
@@ -57,6 +57,11 @@ typedef struct local_point
 // One repetition is as long on the object as the scene says, however large the instance is.
 static local_point to_local(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)
 {
+    if (input->space == TY_SPACE_WORLD)
+        return (local_point){
+            ty_mul(point->position, 1.0f / input->size),
+            point->ns,
+            {ty_mul(point->footprint[0], 2.0f / input->size), ty_mul(point->footprint[1], 2.0f / input->size)}};
     ty_affine world = ty_world_to_world(context->world, point->object, point->instance, point->time);
     ty_affine local = ty_world_to_local(context->world, point->object, point->instance, point->time);
     float scale = ty_instance_scale(&world) / input->size;
@@ -92,6 +97,18 @@ static void weigh(ty_vec3 n, float blend, float weight[3])
         weight[i] = sum > 0.0f ? weight[i] / sum : i == 1 ? 1.0f : 0.0f;
 }
 
+static lookup along(const local_point* p, int axis, float side)
+{
+    return (lookup){project(p->position, axis, side), project(p->footprint[0], axis, side),
+                    project(p->footprint[1], axis, side)};
+}
+
+static ty_texel planar(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)
+{
+    local_point p = to_local(input, context, point);
+    return sample(input, context, along(&p, 1, 1.0f));
+}
+
 static ty_texel triplanar(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)
 {
     local_point p = to_local(input, context, point);
@@ -103,9 +120,7 @@ static ty_texel triplanar(const ty_input* input, const ty_shading_context* conte
     {
         if (weight[axis] <= 0.0f)
             continue;
-        lookup l = {project(p.position, axis, side[axis]), project(p.footprint[0], axis, side[axis]),
-                    project(p.footprint[1], axis, side[axis])};
-        ty_texel texel = sample(input, context, l);
+        ty_texel texel = sample(input, context, along(&p, axis, side[axis]));
         sum.rgb = ty_rgb_add(sum.rgb, ty_rgb_scale(texel.rgb, weight[axis]));
         sum.alpha += texel.alpha * weight[axis];
     }
@@ -135,6 +150,7 @@ static ty_rgb channel_of(const ty_texel* texel, ty_input_channel channel)
 ty_rgb ty_input_texel(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)
 {
     ty_texel texel = input->mapping == TY_MAPPING_TRIPLANAR ? triplanar(input, context, point)
+                     : input->mapping == TY_MAPPING_PLANAR  ? planar(input, context, point)
                                                             : sample(input, context, by_uv(context, point));
     return channel_of(&texel, (ty_input_channel)input->channel);
 }

@@ -178,6 +178,10 @@ static void mappings_are_read(void** state)
     fixture_must_load(MATERIAL("{ texture: ./a.png, uv: { scale: [2, 3], offset: 0.5, rotate: 90 }, channel: g }"));
     fixture_must_load(MATERIAL("{ texture: ./a.png, mapping: triplanar, size: 0.2, blend: 1, channel: luminance }"));
     fixture_one_error(MATERIAL("{ texture: ./a.png, size: 0.2 }"), 3, 62, "nothing without 'mapping: triplanar'");
+    fixture_must_load(MATERIAL("{ texture: ./a.png, mapping: planar, space: world, size: 0.2, uv: { offset: 0.5 } }"));
+    fixture_one_error(MATERIAL("{ texture: ./a.png, mapping: planar, blend: 0.2 }"), 3, 80,
+                      "without 'mapping: triplanar'");
+    fixture_one_error(MATERIAL("{ texture: ./a.png, space: world }"), 3, 63, "'mapping: triplanar' or 'planar'");
     fixture_one_error(MATERIAL("{ texture: ./a.png, mapping: triplaner }"), 3, 65, "did you mean 'triplanar'");
     fixture_one_error(MATERIAL("{ texture: ./a.png, channel: x }"), 3, 65, "no channel 'x'; the file has R, G, B");
     fixture_one_error(MATERIAL("{ texture: ./a.png, uv: { scal: 2 } }"), 3, 62, "did you mean 'scale'");

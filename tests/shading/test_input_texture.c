@@ -287,6 +287,44 @@ static void triplanar_is_not_mirrored(void** state)
     }
 }
 
+// What lies from above is the same at any height and slope; in the world's space wherever the object stands.
+static void planar_falls_from_above(void** state)
+{
+    const stage* s = *state;
+    ty_rng rng = ty_rng_make((ty_seed){8}, 0, 0);
+    ty_input input = textured(0);
+    input.mapping = TY_MAPPING_PLANAR;
+    input.size = 1.5f;
+    const ty_quat back = ty_quat_axis_angle((ty_vec3){0.6f, 0.0f, 0.8f}, -1.1f);
+    for (int i = 0; i < 200; i++)
+    {
+        ty_surface_point p = on_sphere(s, random_direction(&rng));
+        ty_vec3 own = ty_quat_rotate(back, ty_sub(p.position, (ty_vec3){0.3f, 5.0f, 0.1f}));
+        for (int space = TY_SPACE_OBJECT; space <= TY_SPACE_WORLD; space++)
+        {
+            float x = space == TY_SPACE_OBJECT ? own.x : p.position.x;
+            input.space = space;
+            assert_close(ty_input_float(&input, &s->context, &p), 0.5f + 0.4f * ty_sin(2.0f * TY_PI * x / 1.5f), 3e-3f);
+        }
+    }
+}
+
+// In the world's space a sphere that stands elsewhere is cut out of the same pattern.
+static void triplanar_may_be_the_worlds(void** state)
+{
+    const stage* s = *state;
+    ty_input input = textured(0);
+    input.mapping = TY_MAPPING_TRIPLANAR;
+    input.space = TY_SPACE_WORLD;
+    input.size = 1.5f;
+    for (float x = -1.0f; x <= 1.0f; x += 0.25f)
+    {
+        ty_surface_point p = on_sphere(s, ty_normalize((ty_vec3){0.02f * x, 1.0f, 0.01f})); // its top: seen from above
+        assert_close(ty_input_float(&input, &s->context, &p), 0.5f + 0.4f * ty_sin(2.0f * TY_PI * p.position.x / 1.5f),
+                     3e-3f);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -295,6 +333,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(triplanar_repeats_in_metres, setup, teardown),
         cmocka_unit_test_setup_teardown(triplanar_has_no_seam, setup, teardown),
         cmocka_unit_test_setup_teardown(triplanar_is_not_mirrored, setup, teardown),
+        cmocka_unit_test_setup_teardown(planar_falls_from_above, setup, teardown),
+        cmocka_unit_test_setup_teardown(triplanar_may_be_the_worlds, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

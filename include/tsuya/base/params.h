@@ -37,8 +37,16 @@ typedef enum ty_param_type
 typedef enum ty_input_mapping
 {
     TY_MAPPING_UV,        // the mesh's texture coordinates
-    TY_MAPPING_TRIPLANAR, // along the three axes of the object's own space, by its normal; needs no uv
+    TY_MAPPING_TRIPLANAR, // along three axes, by the normal; needs no uv
+    TY_MAPPING_PLANAR,    // along y alone, from above; the same
 } ty_input_mapping;
+
+// Whose axes they are.
+typedef enum ty_input_space
+{
+    TY_SPACE_OBJECT, // each instance has its own
+    TY_SPACE_WORLD,
+} ty_input_space;
 
 typedef enum ty_input_channel
 {
@@ -70,7 +78,8 @@ typedef struct ty_input
     // Of textures alone.
     int mapping, channel;     // ty_input_mapping, ty_input_channel
     ty_vec2 uv_x, uv_y, uv_t; // the texture is looked up at uv_x * u + uv_y * v + uv_t
-    float size;               // m: side of one repetition when triplanar
+    int space;                // ty_input_space, of all mappings but uv
+    float size;               // m: side of one repetition, likewise
     float blend;              // 0..1: how far the three directions reach into one another
 } ty_input;
 
