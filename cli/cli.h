@@ -107,8 +107,17 @@ TY_CHECKED ty_status ty_json_write(const char* path, json_t* value);
 void ty_info_print_metrics(const json_t* values, int indent);
 // Whether the path ends in one of the endings (up to NULL); else a usage mistake that lists them.
 TY_CHECKED ty_status ty_output_check_ending(const ty_command* command, const char* output, const char* const* endings);
-// Whether the state of a run of frames can be written at path: an .exr; a mistake is logged.
-TY_CHECKED ty_status ty_output_check_state(const ty_command* command, const char* path);
+extern const char* const ty_state_endings[]; // of what a run of frames goes on from
+typedef enum ty_output_form
+{
+    TY_OUTPUT_FILE,   // one, without #
+    TY_OUTPUT_FRAMES, // with # for the number
+    TY_OUTPUT_EITHER,
+} ty_output_form;
+// Whether a command may write there, before minutes of work: its ending (endings NULL: any), its form, its folder. what
+// it is called in messages: "output", "state". path NULL: the command's first option is missing. Logged.
+TY_CHECKED ty_status ty_output_check(const ty_command* command, const char* what, const char* path,
+                                     const char* const* endings, ty_output_form form);
 // Whether a file can be written at path; leaves nothing there.
 TY_CHECKED ty_status ty_output_probe(const char* path, ty_error* error);
 // A file that is complete or absent, written as a stream. A failure of put, or of the disk, leaves the old one.

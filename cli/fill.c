@@ -8,49 +8,7 @@
 #include <tsuya/base/log.h>
 
 static const char *const frame_endings[] = {"exr", "png", NULL}, *const picture_endings[] = {"png", NULL};
-static const char *const state_endings[] = {"exr", NULL}, *const page_endings[] = {"html", NULL};
-
-static ty_status check_pattern(const ty_command* command, const char* pattern, const char* const* endings)
-{
-    ty_error error;
-    char path[TY_PATH_MAX];
-    ty_status status = ty_output_check_ending(command, pattern, endings);
-    if (status != TY_OK)
-        return status;
-    if (!ty_path_is_sequence(pattern))
-        return ty_usage(command, "the output '%s' needs #### where the number of a frame goes", pattern);
-    ty_path_frame(pattern, 1, path);
-    status = ty_output_probe(path, &error); // before minutes of work
-    if (status != TY_OK)
-        ty_log_error(&error);
-    return status;
-}
-
-ty_status ty_output_check_state(const ty_command* command, const char* path)
-{
-    ty_error error;
-    ty_status status = ty_output_check_ending(command, path, state_endings);
-    if (status != TY_OK)
-        return status;
-    if (ty_path_is_sequence(path))
-        return ty_usage(command, "the state '%s' is one file: it has no #", path);
-    status = ty_output_probe(path, &error);
-    if (status != TY_OK)
-        ty_log_error(&error);
-    return status;
-}
-
-static ty_status check_page(const ty_command* command, const char* path, const char* const* endings)
-{
-    ty_error error;
-    ty_status status = ty_output_check_ending(command, path, endings);
-    if (status != TY_OK)
-        return status;
-    status = ty_output_probe(path, &error);
-    if (status != TY_OK)
-        ty_log_error(&error);
-    return status;
-}
+static const char* const page_endings[] = {"html", NULL};
 
 static ty_status check_outputs(const ty_arguments* arguments)
 {
@@ -59,19 +17,18 @@ static ty_status check_outputs(const ty_arguments* arguments)
     const char* state = ty_argument_text(arguments, "state", NULL);
     const char* sheet = ty_argument_text(arguments, "sheet", NULL);
     const char* page = ty_argument_text(arguments, "page", NULL);
-    if (!output)
-        return ty_usage(arguments->command, "where to? give -o %s", arguments->command->options[0].value);
-    ty_status status = check_pattern(arguments->command, output, frame_endings);
+    const ty_command* command = arguments->command;
+    ty_status status = ty_output_check(command, "output", output, frame_endings, TY_OUTPUT_FRAMES);
     if (status == TY_OK && png)
-        status = check_pattern(arguments->command, png, picture_endings);
+        status = ty_output_check(command, "output", png, picture_endings, TY_OUTPUT_FRAMES);
     if (status == TY_OK && state)
-        status = ty_output_check_state(arguments->command, state);
+        status = ty_output_check(command, "state", state, ty_state_endings, TY_OUTPUT_FILE);
     if (status == TY_OK && sheet)
-        status = check_page(arguments->command, sheet, picture_endings);
+        status = ty_output_check(command, "sheet", sheet, picture_endings, TY_OUTPUT_FILE);
     if (status == TY_OK && page)
-        status = check_page(arguments->command, page, page_endings);
+        status = ty_output_check(command, "page", page, page_endings, TY_OUTPUT_FILE);
     if (status == TY_OK && page && strcmp(ty_path_extension(output), "exr") != 0)
-        status = ty_usage(arguments->command, "--page reads what the frames tell: they must end in .exr");
+        status = ty_usage(command, "--page reads what the frames tell: they must end in .exr");
     return status;
 }
 

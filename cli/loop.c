@@ -68,28 +68,14 @@ static ty_status report_give(const ty_arguments* arguments, const char* output, 
 
 static ty_status check_output(const ty_arguments* arguments, const char* output)
 {
-    ty_error error;
-    char path[TY_PATH_MAX];
-    if (!output)
-        return ty_usage(arguments->command, "where to? give -o %s", arguments->command->options[0].value);
-    ty_status status = ty_output_check_ending(arguments->command, output, endings);
-    if (status != TY_OK)
-        return status;
-    if (ty_video_is_named(output) == ty_path_is_sequence(output))
-        return ty_usage(arguments->command,
-                        ty_video_is_named(output) ? "the film '%s' is one file: it has no #"
-                                                  : "the output '%s' needs #### where the number of a frame goes",
-                        output);
-    if (ty_video_is_named(output) && !ty_video_available())
-        return ty_usage(arguments->command, "there is no ffmpeg in PATH; write frames: -o 'OUT.####.png'");
-    ty_path_frame(output, 1, path);
-    status = ty_output_probe(path, &error);
+    const ty_command* command = arguments->command;
     const char* report = ty_argument_text(arguments, "report", NULL);
-    if (status == TY_OK && report)
-        status = ty_output_probe(report, &error);
-    if (status != TY_OK)
-        ty_log_error(&error);
-    return status;
+    bool film = output && ty_video_is_named(output);
+    ty_status status =
+        ty_output_check(command, film ? "film" : "output", output, endings, film ? TY_OUTPUT_FILE : TY_OUTPUT_FRAMES);
+    if (status == TY_OK && film && !ty_video_available())
+        return ty_usage(command, "there is no ffmpeg in PATH; write frames: -o 'OUT.####.png'");
+    return status == TY_OK && report ? ty_output_check(command, "report", report, NULL, TY_OUTPUT_FILE) : status;
 }
 
 static ty_status make(const ty_arguments* arguments, const char* pattern, ty_scene_arguments* scene_arguments)

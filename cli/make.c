@@ -32,42 +32,17 @@ static const product* find_product(const ty_command* command)
     return found;
 }
 
-ty_status ty_output_check_ending(const ty_command* command, const char* output, const char* const* endings)
-{
-    char list[128] = "";
-    for (int i = 0; endings[i]; i++)
-    {
-        if (strcmp(ty_path_extension(output), endings[i]) == 0)
-            return TY_OK;
-        size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s.%s", i == 0 ? "" : endings[i + 1] ? ", " : " or ", endings[i]);
-    }
-    return ty_usage(command, "the output '%s' must end in %s", output, list);
-}
-
 static ty_status check_output(const ty_arguments* arguments, const product* p, const char* output)
 {
-    ty_error error;
-    char path[TY_PATH_MAX];
-    if (!output)
-        return ty_usage(arguments->command, "where to? give -o %s", arguments->command->options[0].value);
-    ty_status status = ty_output_check_ending(arguments->command, output, p->extensions);
-    if (status != TY_OK)
-        return status;
-    bool film = ty_path_is_sequence(output) && strcmp(p->kind, "aggregate") == 0;
-    if (film && ty_argument_has(arguments, "resume"))
-        return ty_usage(arguments->command, "--resume goes on to one file; a film begins at its beginning");
-    if (ty_path_is_sequence(output) ? !p->is_sequence : !p->is_file)
-        return ty_usage(arguments->command,
-                        p->is_sequence ? "the output '%s' needs #### where the number of a frame goes"
-                                       : "the output '%s' is one file: it has no #",
-                        output);
-    ty_path_frame(output, 1, path);
-    status = ty_output_probe(path, &error); // before minutes of work
-    if (status != TY_OK)
-        ty_log_error(&error);
+    const ty_command* command = arguments->command;
     const char* state = ty_argument_text(arguments, "state", NULL);
-    return status == TY_OK && state ? ty_output_check_state(arguments->command, state) : status;
+    bool film = output && ty_path_is_sequence(output) && strcmp(p->kind, "aggregate") == 0;
+    if (film && ty_argument_has(arguments, "resume"))
+        return ty_usage(command, "--resume goes on to one file; a film begins at its beginning");
+    ty_output_form form = !p->is_sequence ? TY_OUTPUT_FILE : p->is_file ? TY_OUTPUT_EITHER : TY_OUTPUT_FRAMES;
+    ty_status status = ty_output_check(command, "output", output, p->extensions, form);
+    return status == TY_OK && state ? ty_output_check(command, "state", state, ty_state_endings, TY_OUTPUT_FILE)
+                                    : status;
 }
 
 // An image after the recipe: the recipe's own, found from where the command is typed.

@@ -15,6 +15,8 @@ enum
     JSON_FLAGS = JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(9)
 };
 
+const char* const ty_state_endings[] = {"exr", NULL};
+
 ty_status ty_output_probe(const char* path, ty_error* error)
 {
     ty_atomic_file file;
@@ -23,6 +25,46 @@ ty_status ty_output_probe(const char* path, ty_error* error)
     {
         ty_atomic_abort(&file);
     }
+    return status;
+}
+
+static ty_status check_ending(const ty_command* command, const char* what, const char* output,
+                              const char* const* endings)
+{
+    char list[128] = "";
+    for (int i = 0; endings[i]; i++)
+    {
+        if (strcmp(ty_path_extension(output), endings[i]) == 0)
+            return TY_OK;
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s.%s", i == 0 ? "" : endings[i + 1] ? ", " : " or ", endings[i]);
+    }
+    return ty_usage(command, "the %s '%s' must end in %s", what, output, list);
+}
+
+ty_status ty_output_check_ending(const ty_command* command, const char* output, const char* const* endings)
+{
+    return check_ending(command, "output", output, endings);
+}
+
+ty_status ty_output_check(const ty_command* command, const char* what, const char* path, const char* const* endings,
+                          ty_output_form form)
+{
+    ty_error error;
+    char first[TY_PATH_MAX];
+    if (!path)
+        return ty_usage(command, "where to? give -o %s", command->options[0].value);
+    ty_status status = endings ? check_ending(command, what, path, endings) : TY_OK;
+    if (status != TY_OK)
+        return status;
+    if (form == TY_OUTPUT_FRAMES && !ty_path_is_sequence(path))
+        return ty_usage(command, "the %s '%s' needs #### where the number of a frame goes", what, path);
+    if (form == TY_OUTPUT_FILE && ty_path_is_sequence(path))
+        return ty_usage(command, "the %s '%s' is one file: it has no #", what, path);
+    ty_path_frame(path, 1, first);
+    status = ty_output_probe(first, &error);
+    if (status != TY_OK)
+        ty_log_error(&error);
     return status;
 }
 
