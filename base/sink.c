@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A file of text or bytes as it grows in memory.
-#include "file_sink.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <tsuya/base/memory.h>
+#include <tsuya/base/sink.h>
 
 void ty_sink_term(ty_sink* text)
 {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Aggregates as binary PLY points, in Houdini's names.
 #include "aggregate_write.h"
-#include "file_sink.h"
 #include "glb.h"
 #include "ply.h"
 #include <string.h>
 #include <tsuya/base/file.h>
+#include <tsuya/base/sink.h>
 #include <tsuya/geometry/aggregate_export.h>
 
 // Beyond some parts in a million scale_x .. scale_z are written too.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Aggregates as USD text: one PointInstancer, its prototypes as Mesh prims beneath it.
 #include "aggregate_write.h"
-#include "file_sink.h"
 #include "glb_build.h"
 #include "placement.h"
 #include <string.h>
 #include <tsuya/base/file.h>
+#include <tsuya/base/sink.h>
 #include <tsuya/geometry/aggregate_export.h>
 
 // --- values ---

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Meshes as OBJ text.
-#include "file_sink.h"
 #include <tsuya/base/file.h>
+#include <tsuya/base/sink.h>
 #include <tsuya/geometry/aggregate_export.h>
 
 static void put_line(ty_sink* text, const char* key, const float* values, int count)

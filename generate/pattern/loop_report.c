@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts of pixels, frame by frame, as JSON.
 #include "loop_report.h"
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 #include <tsuya/base/log.h>
 #include <tsuya/base/memory.h>
+#include <tsuya/base/sink.h>
 
 struct ty_loop_report
 {
@@ -127,38 +126,14 @@ double ty_loop_wavelength(const ty_loop_volume* volume, float iso)
 
 // --- text ---
 
-typedef struct text
+static void pair_add(ty_sink* t, const ty_loop_pair* p)
 {
-    char* data;
-    size_t size, capacity;
-} text;
-
-static void TY_PRINTF(2, 3) add(text* t, const char* format, ...)
-{
-    char piece[512];
-    va_list values;
-    va_start(values, format);
-    int length = vsnprintf(piece, sizeof piece, format, values);
-    va_end(values);
-    TY_ASSERT(length >= 0 && (size_t)length < sizeof piece);
-    if (t->size + (size_t)length + 1 > t->capacity)
-    {
-        size_t capacity = 2 * t->capacity + sizeof piece;
-        t->data = ty_grow(t->data, t->size, capacity, 1);
-        t->capacity = capacity;
-    }
-    memcpy(t->data + t->size, piece, (size_t)length + 1);
-    t->size += (size_t)length;
-}
-
-static void pair_add(text* t, const ty_loop_pair* p)
-{
-    add(t, "{\"changed\": %.6f, \"overlap\": %.6f, \"density\": %.6f, \"jaccard\": %.6f, \"kappa\": %.6f}", p->changed,
-        p->overlap, p->density, p->jaccard, p->kappa);
+    ty_sink_format(t, "{\"changed\": %.6f, \"overlap\": %.6f, \"density\": %.6f, \"jaccard\": %.6f, \"kappa\": %.6f}",
+                   p->changed, p->overlap, p->density, p->jaccard, p->kappa);
 }
 
 // Largest change and largest difference from one change to the next, the seam apart; means of the rest.
-static void summary_add(text* t, const ty_loop_report* r)
+static void summary_add(ty_sink* t, const ty_loop_report* r)
 {
     int n = r->recipe->frames;
     ty_loop_pair mean = {0};
@@ -180,11 +155,12 @@ static void summary_add(text* t, const ty_loop_report* r)
     }
     double seam = r->pairs[n - 1].changed, before = n > 1 ? r->pairs[n - 2].changed : 0.0, after = r->pairs[0].changed;
     double seam_jump = fabs(seam - before) > fabs(after - seam) ? fabs(seam - before) : fabs(after - seam);
-    add(t, "\"mean\": ");
+    ty_sink_format(t, "\"mean\": ");
     pair_add(t, &mean);
-    add(t, ", \"density_least\": %.6f, \"density_most\": %.6f, \"changed_most\": %.6f, \"changed_at_seam\": %.6f, ",
+    ty_sink_format(
+        t, ", \"density_least\": %.6f, \"density_most\": %.6f, \"changed_most\": %.6f, \"changed_at_seam\": %.6f, ",
         density[0], density[1], most, seam);
-    add(t, "\"speed_jump_most\": %.6f, \"speed_jump_at_seam\": %.6f, ", jump, seam_jump);
+    ty_sink_format(t, "\"speed_jump_most\": %.6f, \"speed_jump_at_seam\": %.6f, ", jump, seam_jump);
 }
 
 static double longest_step(const ty_loop_report* r)
@@ -219,7 +195,7 @@ char* ty_loop_report_end(const ty_loop_report* report, int first)
 {
     const ty_loop_recipe* recipe = report->recipe;
     const int* size = report->volume->size;
-    text t = {0};
+    ty_sink t = {0};
     double wave =
         recipe->wavelength > 0.0f ? (double)recipe->wavelength : ty_loop_wavelength(report->volume, recipe->iso);
     double step = longest_step(report);
@@ -229,18 +205,19 @@ char* ty_loop_report_end(const ty_loop_report* report, int first)
                "from frame to frame the rectangle moves up to %.1f voxels, above a quarter of the pattern's wavelength "
                "of %.1f: it will seem to jump; %d frames do not",
                step, wave, needed);
-    add(&t, "{\"frames\": %d, \"volume\": [%d, %d, %d], ", recipe->frames, size[0], size[1], size[2]);
-    add(&t, "\"colors\": %d, \"wavelength\": %.3f, \"step_most\": %.4f, \"frames_needed\": %d, ",
-        report->volume->palette.count, wave, step, needed > 0 ? needed : recipe->frames);
-    add(&t, "\"outside\": %.6f, \"start\": %.6f, ", outside_mean(report), (double)first / recipe->frames);
+    ty_sink_format(&t, "{\"frames\": %d, \"volume\": [%d, %d, %d], ", recipe->frames, size[0], size[1], size[2]);
+    ty_sink_format(&t, "\"colors\": %d, \"wavelength\": %.3f, \"step_most\": %.4f, \"frames_needed\": %d, ",
+                   report->volume->palette.count, wave, step, needed > 0 ? needed : recipe->frames);
+    ty_sink_format(&t, "\"outside\": %.6f, \"start\": %.6f, ", outside_mean(report), (double)first / recipe->frames);
     summary_add(&t, report);
-    add(&t, "\"steps\": [");
+    ty_sink_format(&t, "\"steps\": [");
     for (int i = 0; i < recipe->frames; i++)
     {
         if (i > 0)
-            add(&t, ", ");
+            ty_sink_format(&t, ", ");
         pair_add(&t, &report->pairs[i]);
     }
-    add(&t, "]}");
-    return t.data;
+    ty_sink_format(&t, "]}");
+    ty_sink_put(&t, "", 1);
+    return (char*)t.bytes;
 }
