@@ -70,55 +70,8 @@ static ty_status check_output(const ty_arguments* arguments, const char* output)
 {
     const ty_command* command = arguments->command;
     const char* report = ty_argument_text(arguments, "report", NULL);
-    bool film = output && ty_video_is_named(output);
-    ty_status status =
-        ty_output_check(command, film ? "film" : "output", output, endings, film ? TY_OUTPUT_FILE : TY_OUTPUT_FRAMES);
-    if (status == TY_OK && film && !ty_video_available())
-        return ty_usage(command, "there is no ffmpeg in PATH; write frames: -o 'OUT.####.png'");
+    ty_status status = ty_film_check(command, output, endings, TY_OUTPUT_FRAMES);
     return status == TY_OK && report ? ty_output_check(command, "report", report, NULL, TY_OUTPUT_FILE) : status;
-}
-
-static ty_status make(const ty_arguments* arguments, const char* pattern, ty_scene_arguments* scene_arguments)
-{
-    ty_error_list errors = {0};
-    ty_status status = ty_recipe_make(arguments->positional[0], "loop", pattern, 0, &scene_arguments->options, &errors);
-    ty_errors_log(&errors);
-    return status;
-}
-
-// Frames in a folder of their own, which goes when the film is there.
-static ty_status make_film(const ty_arguments* arguments, const char* output, double fps,
-                           ty_scene_arguments* scene_arguments)
-{
-    static ty_atomic_folder folder; // paths: too large for the stack
-    static char pattern[TY_PATH_MAX];
-    ty_error error;
-    char* name = ty_string_format("%s.frames", output);
-    ty_status status = ty_atomic_folder_begin(&folder, name, &error);
-    ty_free(name);
-    if (status != TY_OK)
-    {
-        ty_log_error(&error);
-        return status;
-    }
-    ty_path_join(folder.temporary, "frame.####.png", pattern);
-    status = make(arguments, pattern, scene_arguments);
-    if (status == TY_OK)
-    {
-        ty_frame_numbers found;
-        ty_frame_list list = {0};
-        status = ty_frame_numbers_find(pattern, &found, &error);
-        if (status == TY_OK)
-        {
-            list = (ty_frame_list){found.numbers, found.count};
-            status = ty_video_write(output, pattern, &list, fps, &error);
-            ty_frame_numbers_term(&found);
-        }
-        if (status != TY_OK)
-            ty_log_error(&error);
-    }
-    ty_atomic_folder_abort(&folder);
-    return status;
 }
 
 static ty_status run(const ty_arguments* arguments)
@@ -135,8 +88,7 @@ static ty_status run(const ty_arguments* arguments)
     if (status != TY_OK)
         return status;
     scene_arguments.options.report = &report;
-    status = ty_video_is_named(output) ? make_film(arguments, output, fps, &scene_arguments)
-                                       : make(arguments, output, &scene_arguments);
+    status = ty_film_make(arguments->positional[0], "loop", output, fps, &scene_arguments.options);
     ty_scene_arguments_term(&scene_arguments);
     if (status == TY_OK)
     {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `tsuya pack`, `tsuya filter` and `tsuya roots`: a recipe to a file, or to files by number.
-#include "cli.h"
+#include "video.h"
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +17,8 @@ typedef struct product
     bool is_sequence, is_file;     // both: the output tells
 } product;
 
-static const char *const filter_extensions[] = {"exr", "png", NULL}, *const mesh_extensions[] = {"ply", NULL};
+static const char *const filter_extensions[] = {"exr", "png", "gif", "mp4", "mov", "mkv", NULL},
+                         *const mesh_extensions[] = {"ply", NULL};
 static const product products[] = {
     {"pack", "aggregate", ty_aggregate_endings, true, true},
     {"filter", "filter", filter_extensions, true, true},
@@ -36,11 +37,12 @@ static ty_status check_output(const ty_arguments* arguments, const product* p, c
 {
     const ty_command* command = arguments->command;
     const char* state = ty_argument_text(arguments, "state", NULL);
-    bool film = output && ty_path_is_sequence(output) && strcmp(p->kind, "aggregate") == 0;
+    bool film =
+        output && (ty_video_is_named(output) || (ty_path_is_sequence(output) && strcmp(p->kind, "aggregate") == 0));
     if (film && ty_argument_has(arguments, "resume"))
         return ty_usage(command, "--resume goes on to one file; a film begins at its beginning");
     ty_output_form form = !p->is_sequence ? TY_OUTPUT_FILE : p->is_file ? TY_OUTPUT_EITHER : TY_OUTPUT_FRAMES;
-    ty_status status = ty_output_check(command, "output", output, p->extensions, form);
+    ty_status status = ty_film_check(command, output, p->extensions, form);
     return status == TY_OK && state ? ty_output_check(command, "state", state, ty_state_endings, TY_OUTPUT_FILE)
                                     : status;
 }
@@ -62,6 +64,17 @@ static ty_status take_image(const ty_arguments* arguments, ty_scene_arguments* o
     return TY_OK;
 }
 
+static ty_status make(const char* recipe, const product* p, const char* output, int element, double fps,
+                      const ty_scene_options* options)
+{
+    if (ty_video_is_named(output))
+        return ty_film_make(recipe, p->kind, output, fps, options);
+    ty_error_list errors = {0};
+    ty_status status = ty_recipe_make(recipe, p->kind, output, element, options, &errors);
+    ty_errors_log(&errors);
+    return status;
+}
+
 static ty_status run(const ty_arguments* arguments)
 {
     static ty_scene_arguments scene_arguments;
@@ -70,6 +83,7 @@ static ty_status run(const ty_arguments* arguments)
     const product one = {p->command, p->kind, mesh_extensions, false, true};
     bool alone = ty_argument_has(arguments, "element");
     long element = 0;
+    double fps = 24.0;
     ty_status status = alone ? ty_argument_int(arguments, "element", 1, INT_MAX, &element) : TY_OK;
     if (status == TY_OK)
         status = check_output(arguments, alone ? &one : p, output);
@@ -77,14 +91,14 @@ static ty_status run(const ty_arguments* arguments)
         status = ty_scene_arguments_read(arguments, &scene_arguments);
     if (status == TY_OK)
         status = take_image(arguments, &scene_arguments);
+    if (status == TY_OK && ty_argument_has(arguments, "fps"))
+        status = ty_argument_float(arguments, "fps", 0.1, 1000.0, &fps);
     if (status != TY_OK)
         return status;
     scene_arguments.options.resume = ty_argument_text(arguments, "resume", NULL);
     scene_arguments.options.state = ty_argument_text(arguments, "state", NULL);
-    ty_error_list errors = {0};
     double start = ty_time_now();
-    status = ty_recipe_make(arguments->positional[0], p->kind, output, (int)element, &scene_arguments.options, &errors);
-    ty_errors_log(&errors);
+    status = make(arguments->positional[0], p, output, (int)element, fps, &scene_arguments.options);
     ty_scene_arguments_term(&scene_arguments);
     if (status != TY_OK && status != TY_NOT_AT_REST)
         return status;
@@ -107,7 +121,9 @@ static const ty_option pack_options[] = {
     TY_SCENE_OPTIONS,
 };
 static const ty_option filter_options[] = {
-    {"output", 'o', "OUT.png", "the picture to write, .png or .exr; with #### the frames, from 1"},
+    {"output", 'o', "OUT.png",
+     "the picture to write, .png or .exr; with #### the frames, from 1; or a film: .gif, .mp4, .mov, .mkv"},
+    {"fps", 0, "N", "frames a second of a film (default 24)"},
     {"state", 0, "FILE.exr", "where the reaction's state is kept, at its end or when it is interrupted"},
     {"resume", 0, "FILE.exr", "go on from that state: the same picture as without a stop, or a later one"},
     TY_SCENE_OPTIONS,

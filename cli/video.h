@@ -13,3 +13,11 @@ TY_CHECKED ty_status ty_video_probe(const char* output, ty_error* error);
 // for ever. The file is complete or absent. TY_INTERRUPTED or TY_TERMINATED on a cancel request.
 TY_CHECKED ty_status ty_video_write(const char* output, const char* pattern, const ty_frame_list* list, double fps,
                                     ty_error* error);
+
+// film.c: as ty_output_check of an output; one that is named as a film is one file and needs an ffmpeg.
+TY_CHECKED ty_status ty_film_check(const ty_command* command, const char* output, const char* const* endings,
+                                   ty_output_form form);
+// Makes a recipe: as ty_recipe_make, or as a film whose frames lie in a folder of their own until it is there. What
+// went wrong is logged.
+TY_CHECKED ty_status ty_film_make(const char* recipe, const char* kind, const char* output, double fps,
+                                  const ty_scene_options* options);

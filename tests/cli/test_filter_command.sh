@@ -12,8 +12,14 @@ Y
 # What is wrong with a command or a recipe, where, and what would be right; nothing is written.
 expect 2 "$tsuya" filter filter.yaml
 says "-o OUT.png"
-expect 2 "$tsuya" filter filter.yaml -o x.gif
-says ".exr or .png"
+expect 2 "$tsuya" filter filter.yaml -o x.jpg
+says "must end in .exr, .png, .gif, .mp4, .mov or .mkv"
+expect 2 "$tsuya" filter filter.yaml -o 'x.#.mp4'
+says "the film 'x.#.mp4' is one file: it has no #"
+expect 2 env PATH=/nowhere "$tsuya" filter filter.yaml -o x.mp4
+says "there is no ffmpeg in PATH"
+expect 2 "$tsuya" filter filter.yaml -o x.mp4 --resume state.exr
+says "a film begins at its beginning"
 expect 2 "$tsuya" filter filter.yaml photo.jpg photo.jpg -o x.png
 expect 2 "$tsuya" filter filter.yaml -o x.png --set frames=3
 says "3 frames do not go into 'x.png'"
@@ -60,6 +66,12 @@ expect 0 "$tsuya" filter filter.yaml 'in.#.jpg' -o 'out.#.png' --set time_per_fr
 for i in 1 2 3 4; do [ -s out.$i.png ] || fail "no out.$i.png"; done
 absent out.5.png
 same out.1.png here.png
+if command -v ffmpeg >/dev/null; then
+    expect 0 "$tsuya" filter filter.yaml 'in.#.jpg' -o film.mp4 --set time_per_frame=20 --fps 12
+    frames=$(ffmpeg -v error -i film.mp4 -f framemd5 - | grep -vc '^#')
+    [ "$frames" -eq 4 ] || fail "film.mp4 has $frames frames"
+    [ -z "$(find . -name 'film*frames*')" ] || fail "frames of the film are left"
+fi
 
 # From a state that was kept the picture is the same. Stopped by a signal, nothing is written but that.
 expect 0 "$tsuya" filter filter.yaml -o early.exr --state state.exr
