@@ -212,9 +212,9 @@ static void rows_take(void* context, int64_t begin, int64_t end, int worker)
 void fill_take_v(const fill_run* run)
 {
     size_t cells = fill_cells(run);
-    bool any = false;
-    for (size_t i = 0; i < cells && !any; i++)
-        any = run->closed[i];
+    uint8_t any = 0;
+    for (size_t i = 0; i < cells; i++)
+        any |= run->closed[i];
     ty_parallel_all(run->workers, run->height, 32, rows_take, &run);
     for (int pass = 0; pass < 2 && any; pass++)
     {

@@ -17,7 +17,7 @@ static void cell_set(const fill_run* run, size_t at, float u, float v)
 static int cell_mark(const fill_run* run, size_t at)
 {
     int x = (int)(at % (size_t)run->width), y = (int)(at / (size_t)run->width);
-    return fill_mark_of(ty_gray_scott_marks(run->field, y)[x]);
+    return fill_mark_of(ty_gray_scott_marks_seen(run->field, y)[x]);
 }
 
 // What cells hold that were closed and are not any more: those with cover 2.
@@ -142,7 +142,7 @@ static void state_blend(const fill_run* run, const ty_vec2* state, int mark)
     for (int y = 0; y < run->height; y++)
     {
         float *u = ty_gray_scott_u(run->field, y), *v = ty_gray_scott_v(run->field, y);
-        const uint8_t* marks = ty_gray_scott_marks(run->field, y);
+        const uint8_t* marks = ty_gray_scott_marks_seen(run->field, y);
         for (int x = 0; x < run->width; x++)
         {
             float c = run->cover[fill_cell(run, x, y)];

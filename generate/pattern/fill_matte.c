@@ -50,7 +50,7 @@ static void rows_take(void* context, int64_t begin, int64_t end, int worker)
     (void)worker;
     for (int y = (int)begin; y < (int)end; y++)
     {
-        const uint8_t *marks = ty_gray_scott_marks(run->field, y), *closed = run->closed + fill_cell(run, 0, y);
+        const uint8_t *marks = ty_gray_scott_marks_seen(run->field, y), *closed = run->closed + fill_cell(run, 0, y);
         uint8_t* layers = run->layers + fill_cell(run, 0, y);
         for (int x = 0; x < run->width; x++)
             layers[x] = closed[x] ? FILL_CLOSED : fill_mark_of(marks[x]);

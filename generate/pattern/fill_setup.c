@@ -246,7 +246,7 @@ ty_status fill_vary(const fill_run* run, ty_error* error)
     float* feed = run->cover; // nobody covers anything now
     for (int y = 0; y < run->height; y++)
     {
-        const uint8_t* marks = ty_gray_scott_marks(run->field, y);
+        const uint8_t* marks = ty_gray_scott_marks_seen(run->field, y);
         for (int x = 0; x < run->width; x++)
         {
             int mark = fill_mark_of(marks[x]);

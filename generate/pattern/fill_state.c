@@ -123,7 +123,7 @@ ty_exr* fill_state_save(const fill_run* run, int frame)
     for (int y = 0; y < run->height; y++)
     {
         size_t at = fill_cell(run, 0, y);
-        const uint8_t* marks = ty_gray_scott_marks(run->field, y);
+        const uint8_t* marks = ty_gray_scott_marks_seen(run->field, y);
         memcpy(u + at, ty_gray_scott_u(run->field, y), row);
         memcpy(v + at, ty_gray_scott_v(run->field, y), row);
         for (int x = 0; x < run->width; x++)

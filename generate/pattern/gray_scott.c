@@ -102,11 +102,10 @@ ty_status ty_gray_scott_create(const ty_gray_scott_def* def, ty_gray_scott** out
     ty_gray_scott* field = TY_ALLOC(ty_gray_scott, 1);
     field->def = *def;
     field->rates = rates_make(def);
-    field->stride = stream_stride(def->width);
-    field->run_stride = field->stride / STREAM_GROUP;
-    size_t size = field->stride * (size_t)def->height;
+    size_t stride = stream_stride(def->width), size = stride * (size_t)def->height;
+    field->run_stride = stride / STREAM_GROUP;
     field->memory = TY_TRY_ALLOC(float, 4 * size);
-    field->marks = TY_TRY_ALLOC(uint8_t, size + 2 * field->stride);
+    field->marks = TY_TRY_ALLOC(uint8_t, size + 2 * stride);
     field->runs = TY_TRY_ALLOC(uint16_t, field->run_stride * (size_t)def->height);
     if (!field->memory || !field->marks || !field->runs)
     {
@@ -119,7 +118,7 @@ ty_status ty_gray_scott_create(const ty_gray_scott_def* def, ty_gray_scott** out
         .wrap_x = def->wrap_x,
         .wrap_y = def->wrap_y,
         .plane_count = 2,
-        .stride = field->stride,
+        .stride = stride,
         .front = {field->memory, field->memory + size},
         .back = {field->memory + 2 * size, field->memory + 3 * size},
         .row = gs_row_choose(TY_GRAY_SCOTT_BEST),
@@ -161,11 +160,16 @@ uint8_t* ty_gray_scott_marks(ty_gray_scott* field, int y)
     return field->marks + gs_cell(field, y + 1);
 }
 
+const uint8_t* ty_gray_scott_marks_seen(const ty_gray_scott* field, int y)
+{
+    return field->marks + gs_cell(field, y + 1);
+}
+
 // Times dt, in the layout of the cells; NULL for NULL.
 static ty_status plane_copy(const ty_gray_scott* field, const float* from, float** out, ty_error* error)
 {
     int w = field->def.width, h = field->def.height;
-    *out = from ? TY_TRY_ALLOC(float, field->stride*(size_t)h) : NULL;
+    *out = from ? TY_TRY_ALLOC(float, field->stream.stride*(size_t)h) : NULL;
     if (from && !*out)
         return ty_error_set(error, TY_NO_MEMORY, "no memory for the rates of %d x %d cells", w, h);
     for (int y = 0; from && y < h; y++)

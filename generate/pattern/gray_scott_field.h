@@ -30,8 +30,7 @@ struct ty_gray_scott
 {
     ty_gray_scott_def def;
     gs_rates rates;
-    size_t stride;      // of a row, cells; cell (0, 0) at STREAM_MARGIN
-    stream stream;      // planes u and v
+    stream stream;      // planes u and v; its stride is that of all rows, cell (0, 0) lies at STREAM_MARGIN
     float *feed, *kill; // [height][stride], times dt; NULL without
     uint8_t* marks;     // [height + 2][stride]: a row above and below
     uint16_t* runs;     // [height][run_stride]
@@ -42,7 +41,7 @@ struct ty_gray_scott
 
 static inline size_t gs_cell(const ty_gray_scott* field, int y)
 {
-    return (size_t)y * field->stride + STREAM_MARGIN;
+    return (size_t)y * field->stream.stride + STREAM_MARGIN;
 }
 
 stream_row_fn gs_row_portable, gs_row_avx2, gs_row_avx512;

@@ -289,7 +289,7 @@ void GS_KERNEL(const void* context, const stream_rows* rows, int y, int begin, i
         .below = {rows->below[0], rows->below[1]},
         .out = {rows->out[0], rows->out[1]},
         .marks = field->marks + gs_cell(field, y + 1),
-        .marks_stride = field->stride,
+        .marks_stride = field->stream.stride,
         .feed = field->feed ? field->feed + at : NULL,
         .kill = field->kill ? field->kill + at : NULL,
         .rates = &field->rates,

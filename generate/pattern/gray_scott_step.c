@@ -37,9 +37,10 @@ static void marks_around(ty_gray_scott* field)
         marks[-1] = marks[field->def.wrap_x ? w - 1 : 0];
         marks[w] = marks[field->def.wrap_x ? 0 : w - 1];
     }
-    const uint8_t *first = field->marks + field->stride, *last = field->marks + (size_t)h * field->stride;
-    memcpy(field->marks, field->def.wrap_y ? last : first, field->stride);
-    memcpy(field->marks + (size_t)(h + 1) * field->stride, field->def.wrap_y ? first : last, field->stride);
+    const uint8_t *first = field->marks + field->stream.stride, *last = field->marks + (size_t)h * field->stream.stride;
+    memcpy(field->marks, field->def.wrap_y ? last : first, field->stream.stride);
+    memcpy(field->marks + (size_t)(h + 1) * field->stream.stride, field->def.wrap_y ? first : last,
+           field->stream.stride);
 }
 
 static uint64_t eight(const uint8_t* marks)
@@ -55,7 +56,7 @@ static unsigned group_kind(const ty_gray_scott* field, const uint8_t* marks)
     uint64_t near = 0;
     for (ptrdiff_t row = -1; row <= 1; row++)
     {
-        const uint8_t* at = marks + row * (ptrdiff_t)field->stride;
+        const uint8_t* at = marks + row * (ptrdiff_t)field->stream.stride;
         near |= eight(at - 1) | eight(at + 7) | eight(at + STREAM_GROUP + 1 - 8);
     }
     if (near & 0x8080808080808080u)

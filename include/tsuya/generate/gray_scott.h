@@ -52,6 +52,8 @@ void ty_gray_scott_drop(ty_gray_scott* field, float x, float y, float radius, ty
 float* ty_gray_scott_u(ty_gray_scott* field, int y);
 float* ty_gray_scott_v(ty_gray_scott* field, int y);
 uint8_t* ty_gray_scott_marks(ty_gray_scott* field, int y);
+// To be read alone: the next step need not look what has changed, and any number of threads may.
+const uint8_t* ty_gray_scott_marks_seen(const ty_gray_scott* field, int y);
 
 // Adds to the rates of each cell: planes [height][width], copied; NULL adds nothing. For maps and jitter; slower.
 // Feed and kill stay above -.1 and below 1 with it, which is the caller's to see to.
