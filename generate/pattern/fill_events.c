@@ -277,7 +277,7 @@ static ty_status event_check(const fill_run* run, int index, ty_error* error)
     if (e->close > 0 && e->op != TY_FILL_HOLE)
         return ty_error_set(error, TY_BAD_INPUT, "events[%d].close: only a hole closes", index);
     int of = mark < 0 ? 0 : mark;
-    if (e->op == TY_FILL_FILL && run->plain[of].y == 0.0f)
+    if (!run->quiet && e->op == TY_FILL_FILL && run->plain[of].y == 0.0f)
         ty_log(TY_LOG_WARNING,
                "events[%d]: fill; with feed %g there is a plain state up to kill %.5f, not with %g: u 1 and v 0", index,
                (double)run->rates[of].feed, (double)fill_plain_limit(run->rates[of]), (double)run->rates[of].kill);

@@ -183,7 +183,7 @@ static ty_status run_make(making* m, const ty_bytes* state, ty_error* error)
 
 ty_status ty_fill_size(const ty_fill_recipe* recipe, int size[2], ty_error* error)
 {
-    fill_run run = {0};
+    fill_run run = {.quiet = true};
     ty_status status = fill_run_init(&run, recipe, NULL, error);
     size[0] = run.width * recipe->scale;
     size[1] = run.height * recipe->scale;

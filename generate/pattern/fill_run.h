@@ -42,6 +42,7 @@ typedef struct fill_run
     float* noise;                       // [height][width], -1..1: the recipe's variation; NULL without
     float trail_threshold;
     bool varies; // feed differs within a mark
+    bool quiet;  // set before init: warnings come another time
     fill_outputs outputs;
     ty_plane_file region, over;
     ty_plane_file* events;                                // by event; path NULL = no image

@@ -145,7 +145,7 @@ static ty_status recipe_check(const fill_run* run, ty_error* error)
         if ((int64_t)r->cells[i] * r->scale > MOST_PIXELS)
             return ty_error_set(error, TY_BAD_INPUT, "scale: %d; %d cells become more than %d pixels", r->scale,
                                 r->cells[i], MOST_PIXELS);
-    if (r->start == TY_PATTERN_START_PLAIN && run->plain[0].y == 0.0f)
+    if (!run->quiet && r->start == TY_PATTERN_START_PLAIN && run->plain[0].y == 0.0f)
         ty_log(TY_LOG_WARNING,
                "start: plain; with feed %g there is a plain state up to kill %.5f, not with %g: it begins empty",
                (double)run->rates[0].feed, (double)fill_plain_limit(run->rates[0]), (double)run->rates[0].kill);
@@ -317,6 +317,7 @@ ty_status fill_run_init(fill_run* run, const ty_fill_recipe* recipe, ty_workers*
 {
     *run = (fill_run){.recipe = recipe,
                       .workers = workers,
+                      .quiet = run->quiet,
                       .width = recipe->cells[0],
                       .height = recipe->cells[1],
                       .wrap_x = recipe->tile != TY_PATTERN_TILE_NONE,

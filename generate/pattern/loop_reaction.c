@@ -223,7 +223,7 @@ ty_status ty_loop_reaction_check(const ty_loop_part* part, int index, int size[3
     if (status == TY_OK)
         status = ty_loop_size_check(size, error);
     if (status == TY_OK)
-        status = field_create(def, size[0], size[1], &field, error);
+        status = ty_loop_part_error(field_create(def, size[0], size[1], &field, error), index, "reaction", error);
     ty_gray_scott_destroy(field);
     return status;
 }

@@ -77,7 +77,7 @@ static ty_status fill_make(const source* s, ty_workers* workers, ty_error* error
     ty_made made = {.frames = {.put = fill_take, .context = &sink}};
     ty_status status = ty_fill_generator.make(&s->part->fill, workers, &made, error);
     ty_free(made.report);
-    return status;
+    return ty_loop_part_error(status, s->index, "fill", error);
 }
 
 // --- pictures ---
@@ -265,6 +265,13 @@ static ty_status raw_make(const source* s, ty_error* error)
 
 // --- of any kind ---
 
+ty_status ty_loop_part_error(ty_status status, int index, const char* group, ty_error* error)
+{
+    if (status != TY_BAD_INPUT || !error || error->file[0])
+        return status;
+    return ty_error_set(error, status, "volume[%d].%s.%.900s", index, group, error->text);
+}
+
 ty_status ty_loop_range(const ty_loop_part* part, int index, float high, float* low, float* scale, ty_error* error)
 {
     bool given = part->range[0] != 0.0f || part->range[1] != 0.0f;
@@ -288,7 +295,7 @@ ty_status ty_loop_source_check(const ty_loop_part* part, int index, int size[3],
     case TY_LOOP_REACTION:
         return ty_loop_reaction_check(part, index, size, error);
     case TY_LOOP_FILL:
-        status = ty_fill_size(&part->fill, size, error);
+        status = ty_loop_part_error(ty_fill_size(&part->fill, size, error), index, "fill", error);
         size[2] = ty_fill_generator.frame_count(&part->fill);
         break;
     case TY_LOOP_RAW:

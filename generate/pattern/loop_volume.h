@@ -94,6 +94,8 @@ TY_CHECKED ty_status ty_loop_reaction_make(const ty_loop_part* part, int index, 
 // What becomes 0, and one over the length of what becomes 0..1, by the part's range; without one it ends at `high`.
 TY_CHECKED ty_status ty_loop_range(const ty_loop_part* part, int index, float high, float* low, float* scale,
                                    ty_error* error);
+// A mistake that begins with a key of one of its groups, told as the part's.
+ty_status ty_loop_part_error(ty_status status, int index, const char* group, ty_error* error);
 static inline bool ty_loop_part_is_colored(const ty_loop_part* part)
 {
     return part->colors > 0 && (part->source == TY_LOOP_STACK || part->source == TY_LOOP_STILL ||

@@ -67,6 +67,9 @@ static void assert_content(const char* name, const char* text)
     assert_string_equal((char*)bytes.data, text);
     ty_bytes_term(&bytes);
     assert_null(bytes.data);
+    size_t size = 0;
+    assert_int_equal(ty_file_size(at(name), &size, NULL), TY_OK);
+    assert_int_equal(size, strlen(text));
 }
 
 static void assert_unreadable(const char* name, size_t max_size, const char* reason)

@@ -43,7 +43,7 @@ refuses "axis.direction: [0, 0, 0]; any length but zero" loop.yaml:9: --set axis
 refuses "plane: at frame 1 it lies outside the volume" loop.yaml:8: --set plane.center=[0,0,4]
 refuses "depth: 24; with a logo an odd number" loop.yaml:5: --set volume.0.reaction.depth=24
 refuses "volume[0].files: missing" loop.yaml:4: --set volume.0.source=stack
-refuses "time_step: 9" loop.yaml --set volume.0.reaction.time_step=9
+refuses "volume[0].reaction.time_step: 9" --set:1: --set volume.0.reaction.time_step=9
 refuses "did you mean 'volume'?" --set:1:1 --set valume=1
 refuses "no file 'mork.png'" --set:1:24 --set volume.0.reaction.logo=mork.png
 sed 's/logo: mark.png, //; s/colors: 2/range: [2, 3]/' loop.yaml >empty.yaml
@@ -127,6 +127,20 @@ printf 'tsuya: 1\nkind: loop\nvolume:\n  - source: raw\n    raw: { file: small.r
 expect 3 "$tsuya" loop raw.yaml -o 'x.#.exr'
 says "has 26 bytes; 3 x 3 x 3 numbers of 1 and a header of 0 are 27"
 says "raw.yaml:5:"
+absent x.1.exr
+cat >fill.yaml <<'Y'
+tsuya: 1
+kind: loop
+volume:
+  - source: fill
+    fill:
+      cells: [32, 32]
+      steps: 100
+      loop: { frames: 5, span: 200 }
+Y
+expect 3 "$tsuya" loop fill.yaml -o 'x.#.exr'
+says "fill.yaml:8:"
+says "volume[0].fill.loop.span: 200; before step 0 there is nothing: at most 100"
 absent x.1.exr
 
 # Where frame 1 is: by a share of the path, or after the step of least change.

@@ -616,7 +616,7 @@ static void mistakes_cost_nothing(void** state)
     must_refuse(&wrong, "9 x 9 x 9 numbers of 2 and a header of 3 are 1461");
     parts[1] = part_default();
     parts[1].reaction.time_step = 9.0f;
-    must_refuse(&wrong, "time_step: 9");
+    must_refuse(&wrong, "volume[1].reaction.time_step: 9");
     parts[1] = logo_part(in_folder("logo.png"), 2);
     must_refuse(&wrong, "volume[1].colors: all parts have colours of one mix, or none has any");
     parts[1].reaction.depth = 4;
@@ -624,7 +624,7 @@ static void mistakes_cost_nothing(void** state)
     parts[1] = part_default();
     parts[1].source = TY_LOOP_FILL;
     parts[1].fill.loop.span = 1 + parts[1].fill.steps;
-    must_refuse(&wrong, "loop.span");
+    must_refuse(&wrong, "volume[1].fill.loop.span: 8001;");
     parts[1] = part_default();
     parts[1].range[0] = parts[1].range[1] = 2.0f;
     must_refuse(&wrong, "volume[1].range: [2, 2]; two different numbers");

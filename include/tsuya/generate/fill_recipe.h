@@ -212,7 +212,7 @@ extern const ty_param_table ty_fill_recipe_table; // the same, for tables that h
 // the outputs as float channels: u, v, mark, trail (frame when v passed the threshold first, -1 = not yet), distance
 // (cells from the front, positive in the hole), matte.NAME for each mark and matte.closed, which add up to 1.
 TY_CHECKED ty_status ty_fill_make(const void* def, ty_workers* workers, const ty_frame_sink* sink, ty_error* error);
-// Width and height of its frames, and its mistakes, before any step.
+// Width and height of its frames, and its mistakes, before any step; no warnings.
 TY_CHECKED ty_status ty_fill_size(const ty_fill_recipe* recipe, int size[2], ty_error* error);
 // The same, but a run goes on after the frame whose state that is (what sink->keep was given, as a file); NULL: from
 // the beginning. The same recipe then gives the very frames that it would have given without a stop.
