@@ -10,6 +10,8 @@
 static const char *const frame_endings[] = {"exr", "png", NULL}, *const picture_endings[] = {"png", NULL};
 static const char* const page_endings[] = {"html", NULL};
 
+static const char* const volume_endings[] = {"raw", "nrrd", NULL};
+
 static ty_status check_outputs(const ty_arguments* arguments)
 {
     const char* output = ty_argument_text(arguments, "output", NULL);
@@ -17,6 +19,7 @@ static ty_status check_outputs(const ty_arguments* arguments)
     const char* state = ty_argument_text(arguments, "state", NULL);
     const char* sheet = ty_argument_text(arguments, "sheet", NULL);
     const char* page = ty_argument_text(arguments, "page", NULL);
+    const char* volume = ty_argument_text(arguments, "volume", NULL);
     const ty_command* command = arguments->command;
     ty_status status = ty_output_check(command, "output", output, frame_endings, TY_OUTPUT_FRAMES);
     if (status == TY_OK && png)
@@ -27,6 +30,10 @@ static ty_status check_outputs(const ty_arguments* arguments)
         status = ty_output_check(command, "sheet", sheet, picture_endings, TY_OUTPUT_FILE);
     if (status == TY_OK && page)
         status = ty_output_check(command, "page", page, page_endings, TY_OUTPUT_FILE);
+    if (status == TY_OK && volume)
+        status = ty_output_check(command, "volume", volume, volume_endings, TY_OUTPUT_FILE);
+    if (status == TY_OK && volume && ty_argument_has(arguments, "resume"))
+        status = ty_usage(command, "--volume holds all frames; with --resume there are only the last");
     if (status == TY_OK && page && strcmp(ty_path_extension(output), "exr") != 0)
         status = ty_usage(command, "--page reads what the frames tell: they must end in .exr");
     return status;
@@ -66,6 +73,7 @@ static ty_status run(const ty_arguments* arguments)
     options->resume = ty_argument_text(arguments, "resume", NULL);
     options->state = ty_argument_text(arguments, "state", NULL);
     options->picture = ty_argument_text(arguments, "png", NULL);
+    options->volume = ty_argument_text(arguments, "volume", NULL);
     if (ty_argument_has(arguments, "also"))
         ty_scene_arguments_set(&scene_arguments, "outputs=[%.70s]", ty_argument_text(arguments, "also", ""));
     ty_error_list errors = {0};
@@ -88,6 +96,7 @@ static const ty_option options[] = {
     {"also", 0, "NAMES", "more channels, as the recipe's `outputs`: u,v,mark,trail,distance,mattes"},
     {"state", 0, "FILE.exr", "where a run keeps its state, at its end or when it is interrupted"},
     {"resume", 0, "FILE.exr", "go on after the frame whose state that is: the same frames as without a stop"},
+    {"volume", 0, "FILE.nrrd", "the frames as slices: v where it is among the channels, else what they show; or .raw"},
     {"sheet", 0, "FILE.png", "a contact sheet of the frames"},
     {"every", 0, "N", "with --sheet: of every N-th frame (default: 24 of them at most)"},
     {"page", 0, "FILE.html", "of a recipe with `map`: a page on which rates are picked with a click"},

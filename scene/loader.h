@@ -205,6 +205,22 @@ TY_CHECKED ty_status ty_recipe_key(const ty_recipe* recipe, ty_files* files, cha
 // frame_write.c: a frame of a generator, Y or R, G, B in ACEScg, by the ending: .exr, or .png as sRGB shows it.
 TY_CHECKED ty_status ty_frame_write(const char* path, const ty_exr* frame, const ty_color* color, ty_error* error);
 
+// frame_volume.c: frames into one file, a slice each. Zeroed but for path, .raw or .nrrd, and depth, the frames there
+// will be.
+typedef struct ty_frame_volume
+{
+    const char* path;
+    int depth, width, height;
+    bool begun;
+    ty_atomic_file file;
+    int fd;
+    size_t head; // bytes before the first number
+} ty_frame_volume;
+
+TY_CHECKED ty_status ty_frame_volume_put(ty_frame_volume* volume, int frame, const ty_exr* image, ty_error* error);
+// The file is there when it is complete, else nothing is.
+TY_CHECKED ty_status ty_frame_volume_end(ty_frame_volume* volume, bool complete, ty_error* error);
+
 // asset_cache.c: what a recipe makes, made at most once per cache folder, into the asset's aggregate, mesh or frames.
 TY_CHECKED ty_status ty_asset_cache_get(ty_loader* loader, ty_asset* asset, ty_error* error);
 

@@ -203,15 +203,22 @@ ty_status ty_recipe_key(const ty_recipe* recipe, ty_files* files, char key[33], 
 typedef struct frame_writer
 {
     const char *pattern, *text, *key;
-    const ty_color* color; // NULL: frames are EXR files
-    const char* picture;   // a pattern of pictures beside them; NULL = none
-    const char* state;     // of a run: a file; NULL = none
+    const ty_color* color;   // NULL: frames are EXR files
+    const char* picture;     // a pattern of pictures beside them; NULL = none
+    const char* state;       // of a run: a file; NULL = none
+    ty_frame_volume* volume; // path NULL = none
 } frame_writer;
 
 static ty_status write_frame(void* context, int frame, ty_exr* image, ty_error* error)
 {
     const frame_writer* writer = context;
     char path[TY_PATH_MAX];
+    if (writer->volume->path)
+    {
+        ty_status put = ty_frame_volume_put(writer->volume, frame, image, error);
+        if (put != TY_OK)
+            return put;
+    }
     ty_exr_add_string(image, "tsuya/recipe", writer->text);
     ty_exr_add_string(image, "tsuya/hash", writer->key);
     ty_path_frame(writer->pattern, frame, path);
@@ -253,13 +260,17 @@ static ty_status write_made(const ty_recipe* recipe, const char* key, const char
                             ty_error* error)
 {
     char* text = ty_recipe_text(recipe);
-    frame_writer writer = {
-        output, text, key, color, options ? options->picture : NULL, options ? options->state : NULL};
+    ty_frame_volume volume = {.path = options ? options->volume : NULL};
+    if (volume.path)
+        volume.depth = recipe->generator->frame_count(recipe->def);
+    frame_writer writer = {output, text, key, color, options ? options->picture : NULL, options ? options->state : NULL,
+                           &volume};
     ty_made made = {.frames = {write_frame, writer.state ? write_state : NULL, &writer}, .state = state};
     if (recipe->generator->product == TY_PRODUCT_AGGREGATE && ty_path_is_sequence(output))
         made.film = (ty_aggregate_sink){write_film, &writer};
     ty_status status = recipe->generator->make(recipe->def, workers, &made, error), written = TY_OK;
     ty_error write_error = {0};
+    written = ty_frame_volume_end(&volume, status == TY_OK, &write_error);
     if (made.report && options && options->report)
         *options->report = made.report;
     else

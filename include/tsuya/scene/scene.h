@@ -296,6 +296,7 @@ typedef struct ty_scene_options
     const char* resume;  // an aggregate, or the state of a run of frames, that is gone on from
     const char* state;   // where a run of frames keeps its state, at its end or when it is interrupted
     const char* picture; // a pattern for frames as pictures (.png) too
+    const char* volume;  // a file for frames as the slices of a volume too, .raw or .nrrd
     char** report;       // takes the figures of a loop, a JSON object; freed by the caller
 } ty_scene_options;
 
