@@ -10,7 +10,8 @@ enum
 {
     GS_RUN_MIXED = TY_GRAY_SCOTT_MARKS, // marks, no barriers near
     GS_RUN_BARRIERS,
-    GS_RUN_VARIED, // rates have planes
+    GS_RUN_VARIED, // rates have planes, no barriers near
+    GS_RUN_VARIED_BARRIERS,
     GS_RUN_LENGTH = 32,
     GS_RUN_SHORT = 6,  // groups: fewer of a mark are not worth a run of their own
     GS_RUN_MOST = 2047 // groups

@@ -249,7 +249,8 @@ GS_INLINE void run_step(const how h, const row* r, int begin, int end)
 GS_INLINE void runs_step(bool nine, bool scaled, const ty_gray_scott* field, row* r, int y, int begin, int end)
 {
     const how even = {nine, false, false, false, scaled}, mixed = {nine, true, false, false, scaled};
-    const how barriers = {nine, true, true, false, scaled}, varied = {nine, true, true, true, scaled};
+    const how barriers = {nine, true, true, false, scaled};
+    const how varied = {nine, true, false, true, scaled}, both = {nine, true, true, true, scaled};
     const uint16_t* runs = field->runs + (size_t)y * field->run_stride;
     for (int x = begin, stop; x < end; x = stop)
     {
@@ -263,12 +264,14 @@ GS_INLINE void runs_step(bool nine, bool scaled, const ty_gray_scott* field, row
             run_step(mixed, r, x, stop);
         else if (kind == GS_RUN_BARRIERS)
             run_step(barriers, r, x, stop);
-        else
+        else if (kind == GS_RUN_VARIED)
             run_step(varied, r, x, stop);
+        else
+            run_step(both, r, x, stop);
     }
 }
 
-// In a context of its own each: sixteen loops in one function leave no registers for any.
+// In a context of its own each: twenty loops in one function leave no registers for any.
 #define GS_RUNS(name, nine, scaled)                                                                                    \
     static __attribute__((noinline)) void name(const ty_gray_scott* field, row* r, int y, int begin, int end)          \
     {                                                                                                                  \

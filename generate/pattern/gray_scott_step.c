@@ -95,7 +95,12 @@ static void rows_make(void* context, int64_t begin, int64_t end, int worker)
         const uint8_t* marks = field->marks + gs_cell(field, y + 1);
         uint16_t* runs = field->runs + (size_t)y * field->run_stride;
         for (int g = 0; g < groups; g++)
-            runs[g] = (uint16_t)(varied ? GS_RUN_VARIED : group_kind(field, marks + g * STREAM_GROUP));
+        {
+            unsigned kind = group_kind(field, marks + g * STREAM_GROUP);
+            if (varied)
+                kind = kind == GS_RUN_BARRIERS ? GS_RUN_VARIED_BARRIERS : GS_RUN_VARIED;
+            runs[g] = (uint16_t)kind;
+        }
         runs_join(runs, groups);
     }
 }

@@ -148,6 +148,30 @@ expect 0 "$tsuya" fill closed.yaml -o 'closed.##.png'
 expect 0 "$tsuya" compare closed.03.png whole.03.png --fail 'max>0.005'
 expect 1 "$tsuya" compare closed.03.png whole.01.png --fail 'max>0.1'
 
+# A run as a volume: the numbers of the frames in one file, which a loop reads as it reads the fill itself.
+expect 2 "$tsuya" fill heal.yaml -o 'out.##.exr' --volume volume.vdb
+expect 2 "$tsuya" fill heal.yaml -o 'out.##.exr' --volume volume.raw --resume part.state.exr
+says "there are only the last"
+expect 0 "$tsuya" fill heal.yaml -o 'whole.##.exr' --also v --volume volume.nrrd
+expect 0 "$tsuya" fill heal.yaml -o 'whole.##.exr' --also v --volume volume.raw
+[ "$(wc -c <volume.raw)" -eq $((128 * 96 * 6 * 4)) ] || fail "a volume of 128 x 96 x 6 numbers"
+head -6 volume.nrrd | grep -qx "sizes: 128 96 6" || fail "sizes in the head"
+tail -c +129 volume.nrrd >rest.raw
+same rest.raw volume.raw
+{
+    printf 'tsuya: 1\nkind: loop\nframes: 5\nsize: [48, 40]\nvolume:\n  - source: fill\n    range: [0, 0.4]\n    fill:\n'
+    sed '1,2d; s/^/      /' heal.yaml
+    printf '      outputs: [v]\n'
+} >of_fill.yaml
+printf 'tsuya: 1\nkind: loop\nframes: 5\nsize: [48, 40]\nvolume:\n  - source: raw\n    range: [0, 0.4]\n    raw: { file: volume.nrrd, header: 128, type: f32, width: 128, height: 96, depth: 6 }\n' >of_raw.yaml
+expect 0 "$tsuya" loop of_fill.yaml -o 'of_fill.#.png'
+expect 0 "$tsuya" loop of_raw.yaml -o 'of_raw.#.png'
+for i in 1 2 3 4 5; do same of_fill.$i.png of_raw.$i.png; done
+expect 1 cmp -s of_raw.1.png of_raw.2.png
+sed 's/frames: 6/frames: 600/' heal.yaml >long.yaml
+expect 130 timeout --preserve-status -s INT 2 "$tsuya" fill long.yaml -o 'long.####.exr' --set run.steps=2000 --volume long.raw
+absent long.raw
+
 # A contact sheet, and a page on which rates are picked.
 expect 0 "$tsuya" fill heal.yaml -o 'sheet.##.exr' --sheet sheet.png --every 2
 expect 0 "$tsuya" info sheet.png
@@ -210,27 +234,3 @@ case $? in
 77) skip "no chromium: the page is not clicked" ;;
 *) fail "the page of the map" ;;
 esac
-
-# A run as a volume: the numbers of the frames in one file, which a loop reads as it reads the fill itself.
-expect 2 "$tsuya" fill heal.yaml -o 'out.##.exr' --volume volume.vdb
-expect 2 "$tsuya" fill heal.yaml -o 'out.##.exr' --volume volume.raw --resume part.state.exr
-says "there are only the last"
-expect 0 "$tsuya" fill heal.yaml -o 'whole.##.exr' --also v --volume volume.nrrd
-expect 0 "$tsuya" fill heal.yaml -o 'whole.##.exr' --also v --volume volume.raw
-[ "$(wc -c <volume.raw)" -eq $((128 * 96 * 6 * 4)) ] || fail "a volume of 128 x 96 x 6 numbers"
-head -6 volume.nrrd | grep -qx "sizes: 128 96 6" || fail "sizes in the head"
-tail -c +129 volume.nrrd >rest.raw
-same rest.raw volume.raw
-{
-    printf 'tsuya: 1\nkind: loop\nframes: 5\nsize: [48, 40]\nvolume:\n  - source: fill\n    range: [0, 0.4]\n    fill:\n'
-    sed '1,2d; s/^/      /' heal.yaml
-    printf '      outputs: [v]\n'
-} >of_fill.yaml
-printf 'tsuya: 1\nkind: loop\nframes: 5\nsize: [48, 40]\nvolume:\n  - source: raw\n    range: [0, 0.4]\n    raw: { file: volume.nrrd, header: 128, type: f32, width: 128, height: 96, depth: 6 }\n' >of_raw.yaml
-expect 0 "$tsuya" loop of_fill.yaml -o 'of_fill.#.png'
-expect 0 "$tsuya" loop of_raw.yaml -o 'of_raw.#.png'
-for i in 1 2 3 4 5; do same of_fill.$i.png of_raw.$i.png; done
-expect 1 cmp -s of_raw.1.png of_raw.2.png
-sed 's/frames: 6/frames: 600/' heal.yaml >long.yaml
-expect 130 timeout --preserve-status -s INT 2 "$tsuya" fill long.yaml -o 'long.####.exr' --set run.steps=2000 --volume long.raw
-absent long.raw
