@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of the root generator: the host's distance, growth to centre lines, the surface around them.
+// The parts of the root generator: the host's distance, growth to a network of centre lines, the surface around them.
 #pragma once
 #include <tsuya/base/rng.h>
 #include <tsuya/generate/roots_recipe.h>
+#include <tsuya/geometry/surface_net.h>
 #include <tsuya/geometry/trace.h>
 
 // --- host ---
@@ -23,68 +24,86 @@ void roots_host_term(roots_host* host);
 // its gradient.
 float roots_host_distance(const roots_host* host, ty_vec3 p, float reach, float blend, ty_vec3* normal);
 
-// --- centre lines ---
+// --- the network ---
 
+typedef enum roots_kind
+{
+    ROOTS_TRUNK,  // what main roots run down along
+    ROOTS_MAIN,   // from the trunk or a start point, over the host and down
+    ROOTS_AERIAL, // hangs from the host until it finds ground
+    ROOTS_FIRST,  // a branch, from a main root to another where it closes a mesh
+    ROOTS_SECOND, // the same between first branches
+    ROOTS_FINE,   // covers what is left
+    ROOTS_KINDS,
+} roots_kind;
+
+// Of a centre line.
 typedef struct roots_point
 {
-    ty_vec3 p;
-    ty_vec3 n;  // unit, away from the host
-    float r;    // m
-    float flat; // height of the section against its width
-    float s;    // m from the trunk
+    ty_vec3 p;   // m
+    ty_vec3 n;   // unit, across the line, away from the host
+    float r;     // m, half the width of the section when fully grown
+    float flat;  // height of the section against its width, 0.3..1
+    float sink;  // how deep the section may reach under the host, of r; 0 where it hangs free
+    float s;     // m from the trunk along the network
+    float birth; // 0..1 of the time of growth, when the tip passes here
 } roots_point;
 
-typedef struct roots_segment
+// Points are ordered away from the trunk; neighbours lie no more than 0.6 r apart on average. The first point of a
+// branch is, bit for bit in place, one of its parent, its last one of the root that it grows into.
+typedef struct roots_line
 {
-    roots_point a, b;
-    int root, level;
-} roots_segment;
+    int first, count; // in points
+    roots_kind kind;
+    int parent, parent_point; // the line that it leaves, and where, an index into points; -1 = none
+    int end, end_point;       // the line that it grows into; -1 = it ends in a tip
+    uint64_t key;             // of its random numbers
+} roots_line;
 
-// Segments of a root follow each other; roots are in the order of their numbers.
-typedef struct roots_lines
+typedef struct roots_network
 {
-    roots_segment* segments;
-    int count, capacity, root_count;
-    float top; // y, where the trunk is cut
-} roots_lines;
+    roots_point* points;
+    int point_count, point_capacity;
+    roots_line* lines;
+    int line_count, line_capacity;
+    float top;                                      // y, where the trunk is cut
+    int requested[ROOTS_KINDS], grown[ROOTS_KINDS]; // lines of a kind
+} roots_network;
 
-TY_CHECKED ty_status roots_grow(const ty_roots_recipe* recipe, const roots_host* host, roots_lines* out,
+void roots_network_term(roots_network* network);
+// Appends; the network is the owner.
+int roots_network_add_line(roots_network* network, const roots_line* line);
+void roots_network_add_point(roots_network* network, const roots_point* point);
+
+TY_CHECKED ty_status roots_grow(const ty_roots_recipe* recipe, const roots_host* host, roots_network* out,
                                 ty_error* error);
-void roots_lines_term(roots_lines* lines);
 
 // --- surface ---
 
+// Where a point of the surface belongs.
 typedef struct roots_sample
 {
     float distance; // m, negative inside
-    int segment;    // the nearest
+    int segment;    // the nearest, of the skin; -1 = none near
+    int line;       // its line
     float at;       // 0..1 along it
     float join;     // 0..1, how much its root runs together with others
 } roots_sample;
 
 typedef struct roots_skin roots_skin; // opaque: blocks of a grid with the segments near each
 
-TY_CHECKED ty_status roots_skin_create(const ty_roots_recipe* recipe, const roots_lines* lines, roots_skin** out,
-                                       ty_error* error);
+// host may be NULL: then nothing is cut.
+TY_CHECKED ty_status roots_skin_create(const ty_roots_recipe* recipe, const roots_network* network,
+                                       const roots_host* host, roots_skin** out, ty_error* error);
 void roots_skin_destroy(roots_skin* skin); // NULL is allowed
 // Any thread. Far from all roots the distance is TY_FLOAT_MAX and segment -1.
 roots_sample roots_skin_at(const roots_skin* skin, ty_vec3 p);
 ty_vec3 roots_skin_normal(const roots_skin* skin, ty_vec3 p);
+// What the line holds there; segment is not -1.
+roots_point roots_skin_point(const roots_skin* skin, roots_sample sample);
 // uv of p on the surface of one segment's root, about the given place.
 ty_vec2 roots_skin_uv(const roots_skin* skin, ty_vec3 p, roots_sample sample);
 // The same as roots_skin_at, but of one root alone.
-roots_sample roots_skin_root_at(const roots_skin* skin, ty_vec3 p, int root);
-
-typedef struct roots_grid
-{
-    ty_vec3 origin;
-    float step;
-    int size[3];
-    float* values; // [size[2]][size[1]][size[0]]
-} roots_grid;
-
-// Distances at the corners of the cells, all that is needed for the surface. false when cancelled.
-TY_CHECKED ty_status roots_skin_grid(const roots_skin* skin, ty_workers* workers, roots_grid* out, ty_error* error);
-
-// The surface where values change sign: closed and oriented, without repeated vertices. Positions and triangles only.
-TY_CHECKED ty_status roots_march(const roots_grid* grid, ty_mesh** out, ty_error* error);
+roots_sample roots_skin_line_at(const roots_skin* skin, ty_vec3 p, int line);
+// Positions and triangles of the surface: one closed shell without sharp corners.
+TY_CHECKED ty_status roots_skin_mesh(const roots_skin* skin, ty_workers* workers, ty_mesh** out, ty_error* error);

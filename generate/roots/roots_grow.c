@@ -17,7 +17,8 @@ typedef struct tip
     float r, s, flat;
     float shown; // the radius follows r over some steps: a branch takes its share without a step in the surface
     float next;  // s of the next branch
-    int level, root;
+    int level;
+    int parent, parent_point;
     uint64_t key; // of its random numbers
     int children;
 } tip;
@@ -26,7 +27,7 @@ typedef struct growth
 {
     const ty_roots_recipe* recipe;
     const roots_host* host;
-    roots_lines* lines;
+    roots_network* network;
     tip* tips; // to be grown, first come first served
     int tip_count, tip_capacity;
 } growth;
@@ -43,19 +44,7 @@ static void tip_add(growth* g, tip t)
         g->tips = ty_grow(g->tips, (size_t)g->tip_capacity, (size_t)capacity, sizeof(tip));
         g->tip_capacity = capacity;
     }
-    t.root = g->tip_count;
     g->tips[g->tip_count++] = t;
-}
-
-static void segment_add(roots_lines* lines, const roots_segment* segment)
-{
-    if (lines->count == lines->capacity)
-    {
-        int capacity = lines->capacity ? 2 * lines->capacity : 1024;
-        lines->segments = ty_grow(lines->segments, (size_t)lines->capacity, (size_t)capacity, sizeof *segment);
-        lines->capacity = capacity;
-    }
-    lines->segments[lines->count++] = *segment;
 }
 
 static ty_vec3 random_vector(ty_rng* rng)
@@ -69,9 +58,11 @@ static ty_vec3 without(ty_vec3 v, ty_vec3 unit)
     return ty_mad(v, unit, -ty_dot(v, unit));
 }
 
-static roots_point point_of(const tip* t)
+static roots_point point_of(const growth* g, const tip* t)
 {
-    return (roots_point){t->p, t->n, t->shown, t->flat, t->s};
+    bool lies = t->flat < 0.999f;
+    return (roots_point){
+        .p = t->p, .n = t->n, .r = t->shown, .flat = t->flat, .sink = lies ? g->recipe->growth.sink : 0.0f, .s = t->s};
 }
 
 // --- one step ---
@@ -148,44 +139,55 @@ static void tip_branch(growth* g, tip* t, ty_rng* rng)
 }
 
 // A root that stops at its longest still ends in a tip.
-static void end_taper(roots_lines* lines, int first, float thinnest)
+static void end_taper(roots_network* network, int first, float thinnest)
 {
-    if (lines->count == first)
-        return;
-    float end = lines->segments[lines->count - 1].b.s, reach = 12.0f * lines->segments[lines->count - 1].b.r;
-    for (int i = first; i < lines->count; i++)
+    roots_point* points = network->points;
+    int last = network->point_count - 1;
+    float reach = 12.0f * points[last].r;
+    for (int i = first; i <= last; i++)
     {
-        roots_point* points[2] = {&lines->segments[i].a, &lines->segments[i].b};
-        for (int k = 0; k < 2; k++)
-        {
-            float left = ty_clamp((end - points[k]->s) / reach, 0.0f, 1.0f);
-            points[k]->r = ty_max(ty_min(points[k]->r, thinnest), points[k]->r * sqrtf(left));
-        }
+        float left = ty_clamp((points[last].s - points[i].s) / reach, 0.0f, 1.0f);
+        points[i].r = ty_max(ty_min(points[i].r, thinnest), points[i].r * sqrtf(left));
     }
 }
 
 static void root_grow(growth* g, int index)
 {
+    static const roots_kind kinds[] = {ROOTS_MAIN, ROOTS_FIRST, ROOTS_SECOND};
     const ty_roots_recipe* recipe = g->recipe;
+    roots_network* network = g->network;
     tip t = g->tips[index];
     ty_rng rng = ty_rng_make(recipe->seed, 0x726f6f74, t.key);
-    int first = g->lines->count;
+    roots_line line = {.first = network->point_count,
+                       .kind = t.level < 3 ? kinds[t.level] : ROOTS_FINE,
+                       .parent = t.parent,
+                       .parent_point = t.parent_point,
+                       .end = -1,
+                       .end_point = -1,
+                       .key = t.key};
     float begin = t.s;
+    roots_point point = point_of(g, &t);
+    roots_network_add_point(network, &point);
     for (int i = 0; i < MOST_STEPS && t.r > recipe->tip && t.s < begin + recipe->length; i++)
     {
         float step = ty_max(0.6f * t.r, 1.5f * recipe->tip);
-        roots_segment segment = {.a = point_of(&t), .root = t.root, .level = t.level};
         tip_step(g, &t, step, &rng);
         bool lies = g->host->has_floor && t.p.y < g->host->floor + 2.0f * t.r; // on the floor it thins out sooner
         float thinner = ty_exp(-step * (lies ? 2.5f : 1.0f) / recipe->taper);
         t.r *= thinner;
         t.shown = ty_lerp(t.shown * thinner, t.r, 0.2f);
-        segment.b = point_of(&t);
-        segment_add(g->lines, &segment);
+        point = point_of(g, &t);
+        roots_network_add_point(network, &point);
+        t.parent = index;
+        t.parent_point = network->point_count - 1;
         if (t.s >= t.next)
             tip_branch(g, &t, &rng);
     }
-    end_taper(g->lines, first, recipe->tip);
+    end_taper(network, line.first, recipe->tip);
+    line.count = network->point_count - line.first;
+    roots_network_add_line(network, &line);
+    network->grown[line.kind]++;
+    network->requested[line.kind]++;
 }
 
 // --- the trunk ---
@@ -202,22 +204,28 @@ static ty_vec3 trunk_foot(const growth* g)
 static void heart_add(growth* g, ty_vec3 foot, ty_vec3 top)
 {
     const ty_roots_trunk_def* def = &g->recipe->trunk;
-    const ty_vec3 n = {1.0f, 0.0f, 0.0f};
     enum
     {
         PIECES = 8
     };
-    for (int i = 0; i < PIECES; i++)
+    roots_line line = {.first = g->network->point_count,
+                       .count = PIECES + 1,
+                       .kind = ROOTS_TRUNK,
+                       .parent = -1,
+                       .parent_point = -1,
+                       .end = -1,
+                       .end_point = -1};
+    for (int i = 0; i <= PIECES; i++)
     {
-        roots_segment segment = {.root = g->tip_count};
-        for (int k = 0; k < 2; k++)
-        {
-            float along = (float)(i + k) / PIECES;
-            ty_vec3 p = ty_lerp3(top, foot, along);
-            *(k ? &segment.b : &segment.a) = (roots_point){p, n, 0.8f * def->radius, 1.0f, along * def->height};
-        }
-        segment_add(g->lines, &segment);
+        float along = (float)i / PIECES;
+        roots_point point = {.p = ty_lerp3(top, foot, along),
+                             .n = {1.0f, 0.0f, 0.0f},
+                             .r = 0.8f * def->radius,
+                             .flat = 1.0f,
+                             .s = along * def->height};
+        roots_network_add_point(g->network, &point);
     }
+    roots_network_add_line(g->network, &line);
 }
 
 static void main_roots_add(growth* g, ty_vec3 top)
@@ -237,15 +245,16 @@ static void main_roots_add(growth* g, ty_vec3 top)
         t.t = ty_normalize(ty_add(ty_mad(down, out, 0.2f), ty_mul(around, twist)));
         t.shown = t.r;
         t.key = ty_mix64((uint64_t)i + 1);
+        t.parent = t.parent_point = -1;
         t.next = recipe->trunk.height + recipe->branch.spacing * wait;
         tip_add(g, t);
     }
 }
 
-ty_status roots_grow(const ty_roots_recipe* recipe, const roots_host* host, roots_lines* out, ty_error* error)
+ty_status roots_grow(const ty_roots_recipe* recipe, const roots_host* host, roots_network* out, ty_error* error)
 {
-    growth g = {.recipe = recipe, .host = host, .lines = out};
-    *out = (roots_lines){0};
+    growth g = {.recipe = recipe, .host = host, .network = out};
+    *out = (roots_network){0};
     ty_vec3 foot = trunk_foot(&g), top = ty_add(foot, recipe->trunk.lean);
     top.y += recipe->trunk.height;
     out->top = top.y;
@@ -253,11 +262,7 @@ ty_status roots_grow(const ty_roots_recipe* recipe, const roots_host* host, root
     for (int i = 0; i < g.tip_count && !ty_cancel_requested(); i++)
         root_grow(&g, i);
     if (recipe->trunk.height > 0.0f)
-    {
         heart_add(&g, ty_mad(foot, down, 0.5f * recipe->trunk.radius), top);
-        g.tip_count++;
-    }
-    out->root_count = g.tip_count;
     ty_free(g.tips);
     if (ty_cancel_requested())
         return ty_error_set(error, TY_INTERRUPTED, "interrupted while roots grew");
@@ -265,10 +270,4 @@ ty_status roots_grow(const ty_roots_recipe* recipe, const roots_host* host, root
         return ty_error_set(error, TY_BAD_INPUT, "branch.spacing: %g m gives more than %d roots",
                             (double)recipe->branch.spacing, MOST_ROOTS);
     return TY_OK;
-}
-
-void roots_lines_term(roots_lines* lines)
-{
-    ty_free(lines->segments);
-    *lines = (roots_lines){0};
 }

@@ -4,73 +4,22 @@
 #include <string.h>
 #include <tsuya/base/log.h>
 
-// --- one piece ---
-
-static uint32_t find(uint32_t* parent, uint32_t v)
-{
-    while (parent[v] != v)
-        v = parent[v] = parent[parent[v]];
-    return v;
-}
-
-// Tips thinner than a cell leave crumbs, and roots may close a hollow in: only the largest surface stays.
-static uint32_t largest_piece(const ty_mesh* mesh, uint32_t* parent)
-{
-    uint32_t* count = TY_ALLOC(uint32_t, mesh->vertex_count);
-    uint32_t best = 0;
-    for (uint32_t v = 0; v < mesh->vertex_count; v++)
-        parent[v] = v;
-    for (uint32_t t = 0; t < mesh->triangle_count; t++)
-        for (int k = 1; k < 3; k++)
-        {
-            uint32_t a = find(parent, mesh->triangles[t][0]), b = find(parent, mesh->triangles[t][k]);
-            parent[a > b ? a : b] = a > b ? b : a;
-        }
-    for (uint32_t v = 0; v < mesh->vertex_count; v++)
-        count[find(parent, v)]++;
-    for (uint32_t v = 0; v < mesh->vertex_count; v++)
-        best = count[v] > count[best] ? v : best;
-    ty_free(count);
-    return best;
-}
-
-static uint32_t pieces_drop(ty_mesh* mesh)
-{
-    uint32_t* parent = TY_ALLOC(uint32_t, mesh->vertex_count);
-    uint32_t kept = largest_piece(mesh, parent), vertices = 0, triangles = 0, dropped = mesh->triangle_count;
-    for (uint32_t t = 0; t < mesh->triangle_count; t++)
-        if (find(parent, mesh->triangles[t][0]) == kept)
-            memcpy(mesh->triangles[triangles++], mesh->triangles[t], sizeof(*mesh->triangles));
-    for (uint32_t v = 0; v < mesh->vertex_count; v++)
-        find(parent, v); // afterwards no chain is needed below
-    uint32_t* number = TY_ALLOC(uint32_t, mesh->vertex_count);
-    for (uint32_t v = 0; v < mesh->vertex_count; v++)
-        if (find(parent, v) == kept)
-        {
-            mesh->positions[vertices] = mesh->positions[v];
-            number[v] = vertices++;
-        }
-    for (uint32_t t = 0; t < triangles; t++)
-        for (int k = 0; k < 3; k++)
-            mesh->triangles[t][k] = number[mesh->triangles[t][k]];
-    ty_free(number);
-    ty_free(parent);
-    mesh->vertex_count = vertices;
-    mesh->triangle_count = triangles;
-    return dropped - triangles;
-}
-
 // --- what stands at each vertex ---
 
 typedef struct dressing
 {
     const roots_skin* skin;
-    const roots_lines* lines;
+    const roots_network* network;
     const ty_roots_recipe* recipe;
     ty_mesh* mesh;
     roots_sample* samples; // [vertex_count]
     float *radius, *level, *join;
 } dressing;
+
+static int level_of(roots_kind kind)
+{
+    return kind == ROOTS_FINE ? 3 : kind == ROOTS_SECOND ? 2 : kind == ROOTS_FIRST ? 1 : 0;
+}
 
 static void vertices_dress(void* context, int64_t begin, int64_t end, int worker)
 {
@@ -84,12 +33,11 @@ static void vertices_dress(void* context, int64_t begin, int64_t end, int worker
         // Interpolation along an edge leaves a part of a cell: one step of Newton's, held within the cell.
         float most = 0.2f * d->recipe->detail;
         *p = ty_mad(*p, n, -ty_clamp(sample.distance, -most, most));
-        const roots_segment* s = &d->lines->segments[sample.segment];
         d->mesh->normals[v] = n;
         d->mesh->uvs[v] = roots_skin_uv(d->skin, *p, sample);
         d->samples[v] = sample;
-        d->radius[v] = ty_lerp(s->a.r, s->b.r, sample.at);
-        d->level[v] = (float)s->level;
+        d->radius[v] = roots_skin_point(d->skin, sample).r;
+        d->level[v] = (float)level_of(d->network->lines[sample.line].kind);
         d->join[v] = sample.join;
     }
 }
@@ -130,8 +78,7 @@ static void seam_add(seams* s, uint32_t triangle, int corner, ty_vec2 uv)
 static void triangle_seams(const dressing* d, uint32_t t, seams* out)
 {
     const uint32_t* corner = d->mesh->triangles[t];
-    const roots_segment* segments = d->lines->segments;
-    int root = segments[d->samples[corner[0]].segment].root;
+    int line = d->samples[corner[0]].line;
     ty_vec2 uv[3];
     bool changed[3] = {false, false, false};
     float most = 0.0f;
@@ -139,9 +86,9 @@ static void triangle_seams(const dressing* d, uint32_t t, seams* out)
     {
         uint32_t v = corner[k];
         uv[k] = d->mesh->uvs[v];
-        if (segments[d->samples[v].segment].root != root)
+        if (d->samples[v].line != line)
         {
-            roots_sample sample = roots_skin_root_at(d->skin, d->mesh->positions[v], root);
+            roots_sample sample = roots_skin_line_at(d->skin, d->mesh->positions[v], line);
             changed[k] = sample.segment >= 0;
             uv[k] = changed[k] ? roots_skin_uv(d->skin, d->mesh->positions[v], sample) : uv[k];
         }
@@ -229,23 +176,17 @@ static ty_status recipe_check(const ty_roots_recipe* r, ty_error* error)
     return TY_OK;
 }
 
-static ty_status surface_make(const ty_roots_recipe* recipe, const roots_lines* lines, ty_workers* workers,
-                              ty_mesh** out, ty_error* error)
+static ty_status surface_make(const ty_roots_recipe* recipe, const roots_network* network, const roots_host* host,
+                              ty_workers* workers, ty_mesh** out, ty_error* error)
 {
     roots_skin* skin;
-    roots_grid grid = {0};
-    ty_status status = roots_skin_create(recipe, lines, &skin, error);
+    ty_status status = roots_skin_create(recipe, network, host, &skin, error);
     if (status != TY_OK)
         return status;
-    status = roots_skin_grid(skin, workers, &grid, error);
-    if (status == TY_OK)
-        status = roots_march(&grid, out, error);
-    ty_free(grid.values);
+    status = roots_skin_mesh(skin, workers, out, error);
     if (status == TY_OK)
     {
-        uint32_t dropped = pieces_drop(*out);
-        ty_log(TY_LOG_DEBUG, "roots: %u triangles of crumbs and hollows left out", dropped);
-        dressing d = {.skin = skin, .lines = lines, .recipe = recipe};
+        dressing d = {.skin = skin, .network = network, .recipe = recipe};
         status = dress(d, workers, out, error);
     }
     roots_skin_destroy(skin);
@@ -256,7 +197,7 @@ ty_status ty_roots_make(const void* def, ty_workers* workers, ty_mesh** out, ty_
 {
     const ty_roots_recipe* recipe = def;
     roots_host host;
-    roots_lines lines = {0};
+    roots_network network = {0};
     double start = ty_time_now();
     *out = NULL;
     ty_status status = recipe_check(recipe, error);
@@ -264,18 +205,18 @@ ty_status ty_roots_make(const void* def, ty_workers* workers, ty_mesh** out, ty_
         status = roots_host_init(&recipe->host, &host, error);
     if (status != TY_OK)
         return status;
-    status = roots_grow(recipe, &host, &lines, error);
+    status = roots_grow(recipe, &host, &network, error);
     double grown = ty_time_now();
     if (status == TY_OK)
-        status = surface_make(recipe, &lines, workers, out, error);
+        status = surface_make(recipe, &network, &host, workers, out, error);
     if (status == TY_OK)
     {
         ty_mesh_compute_bounds(*out);
         ty_mesh_compute_welds(*out);
-        ty_log(TY_LOG_INFO, "roots: %d roots of %d pieces grown in %.1f s, %u triangles in %.1f s", lines.root_count,
-               lines.count, grown - start, (*out)->triangle_count, ty_time_now() - grown);
+        ty_log(TY_LOG_INFO, "roots: %d roots of %d points grown in %.1f s, %u triangles in %.1f s", network.line_count,
+               network.point_count, grown - start, (*out)->triangle_count, ty_time_now() - grown);
     }
-    roots_lines_term(&lines);
+    roots_network_term(&network);
     roots_host_term(&host);
     return status;
 }

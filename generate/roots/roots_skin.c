@@ -1,80 +1,68 @@
 // SPDX-License-Identifier: Apache-2.0
 // The surface of roots as a distance: exact within one root, run together between roots, cut at the trunk's top.
 // Segments are found through blocks of a grid, so that it can be asked anywhere.
-#include "roots.h"
+#include "roots_skin.h"
+#include <math.h>
 #include <string.h>
+#include <tsuya/base/log.h>
 #include <tsuya/base/noise.h>
 
-enum
-{
-    BLOCK = 4,                // corners of cells a side
-    MOST_CORNERS = 150000000, // of the grid: 600 MB
-};
-
 #define CUT_EDGE 0.4e-3f // m, rounding of the cut
-
-struct roots_skin
-{
-    const ty_roots_recipe* recipe;
-    const roots_lines* lines;
-    ty_vec3 origin;
-    float step;
-    int size[3], blocks[3];
-    int* begin; // [blocks + 1] into list
-    int* list;  // segments, in order
-};
+#define MOST_BLOCKS 60e6 // of the grid, with or without roots
 
 // --- one segment ---
 
-static roots_point segment_point(const roots_segment* s, float t)
+static float along(const roots_segment* s, ty_vec3 p)
 {
-    roots_point p = {.p = ty_lerp3(s->a.p, s->b.p, t), .n = ty_lerp3(s->a.n, s->b.n, t)};
-    p.r = ty_lerp(s->a.r, s->b.r, t);
-    p.flat = ty_lerp(s->a.flat, s->b.flat, t);
-    p.s = ty_lerp(s->a.s, s->b.s, t);
-    return p;
+    return ty_clamp(ty_dot(ty_sub(p, s->a), s->d) * s->length_1, 0.0f, 1.0f);
 }
 
-// p about the axis; a flat section is stretched to a round one.
-static ty_vec3 stretched(const roots_point* axis, ty_vec3 p)
+// p about the axis.
+static ty_vec3 across(const roots_segment* s, float t, ty_vec3 p)
 {
-    ty_vec3 q = ty_sub(p, axis->p);
-    return ty_mad(q, axis->n, ty_dot(q, axis->n) * (1.0f / axis->flat - 1.0f));
+    return ty_sub(p, ty_mad(s->a, s->d, t));
 }
 
-static float segment_distance(const roots_segment* s, ty_vec3 p, float* at)
+static ty_vec3 normal(const roots_segment* s, float t)
 {
-    ty_vec3 along = ty_sub(s->b.p, s->a.p);
-    float length = ty_length_sqr(along);
-    *at = length > 0.0f ? ty_clamp(ty_dot(ty_sub(p, s->a.p), along) / length, 0.0f, 1.0f) : 0.0f;
-    roots_point axis = segment_point(s, *at);
-    return ty_length(stretched(&axis, p)) - axis.r;
+    return ty_mad(s->na, s->nd, t);
+}
+
+// A flat section is stretched to a round one.
+static float segment_distance(const roots_segment* s, ty_vec3 p, float* t)
+{
+    *t = along(s, p);
+    ty_vec3 q = across(s, *t, p);
+    float height = ty_dot(q, normal(s, *t));
+    return sqrtf(ty_length_sqr(q) + height * height * (s->ea + *t * s->ed)) - roots_segment_radius(s, *t);
 }
 
 // --- relief ---
 
-// Flutes along the root and small swellings across it, as lengths: about -1.4..1.4 times the depth of the bark.
-static float relief(const roots_skin* skin, const roots_segment* s, float at, ty_vec3 p)
+// Flutes along the root and small swellings across it.
+float roots_skin_relief(const roots_skin* skin, const roots_segment* s, float t, ty_vec3 p)
 {
     const ty_roots_recipe* recipe = skin->recipe;
-    roots_point axis = segment_point(s, at);
-    ty_vec3 across = ty_normalize(stretched(&axis, p));
-    uint32_t seed = (uint32_t)recipe->seed.value + 77u * (uint32_t)s->root;
-    float along = axis.s / recipe->radius;
-    ty_vec3 flute = ty_add(ty_mul(across, 1.3f), ty_vec3_make(0.22f * along, 0.0f, 0.31f * along));
-    ty_vec3 swell = ty_add(ty_mul(across, 0.9f), ty_vec3_make(0.0f, 0.7f * along, 0.3f * along));
-    ty_vec3 grain = ty_add(ty_mul(across, 4.5f), ty_vec3_make(0.6f * along, 1.3f * along, 0.0f));
-    float fine = ty_clamp(axis.r / (4.5f * skin->step) - 1.0f, 0.0f, 1.0f); // what cells cannot show is left out
+    const roots_point* points = skin->network->points;
+    ty_vec3 q = across(s, t, p), n = normal(s, t);
+    float stretch = sqrtf(1.0f + s->ea + t * s->ed) - 1.0f, r = roots_segment_radius(s, t);
+    ty_vec3 side = ty_normalize(ty_mad(q, n, ty_dot(q, n) * stretch));
+    uint32_t seed = (uint32_t)recipe->seed.value + (uint32_t)skin->network->lines[s->line].key;
+    float way = ty_lerp(points[s->point].s, points[s->point + 1].s, t) / recipe->radius;
+    ty_vec3 flute = ty_add(ty_mul(side, 1.3f), ty_vec3_make(0.22f * way, 0.0f, 0.31f * way));
+    ty_vec3 swell = ty_add(ty_mul(side, 0.9f), ty_vec3_make(0.0f, 0.7f * way, 0.3f * way));
+    ty_vec3 grain = ty_add(ty_mul(side, 4.5f), ty_vec3_make(0.6f * way, 1.3f * way, 0.0f));
+    float fine = ty_clamp(r / (4.5f * skin->step) - 1.0f, 0.0f, 1.0f); // what cells cannot show is left out
     float sum = ty_value_noise(flute, seed) + 0.35f * ty_value_noise(swell, seed + 1u);
     sum += fine > 0.0f ? 0.3f * fine * ty_value_noise(grain, seed + 2u) : 0.0f;
-    return recipe->bark * axis.r * sum;
+    return recipe->bark * r * sum;
 }
 
 // --- all of them ---
 
 typedef struct gathered
 {
-    roots_sample sample;
+    roots_sample sample; // its segment is an index into the skin's
     float radius;
 } gathered;
 
@@ -101,57 +89,64 @@ static void gather(const roots_skin* skin, gathered* all, const gathered* one)
 }
 
 // The nearest of a root's segments from list[*i] on; *i goes on to the next root.
-static gathered root_nearest(const roots_skin* skin, const int* list, int end, int* i, ty_vec3 p)
+static gathered line_nearest(const roots_skin* skin, int32_t end, int32_t* i, ty_vec3 p)
 {
-    const roots_segment* segments = skin->lines->segments;
-    int root = segments[list[*i]].root;
-    gathered best = {{TY_FLOAT_MAX, -1, 0.0f, 0.0f}, 0.0f};
-    for (; *i < end && segments[list[*i]].root == root; ++*i)
+    const roots_segment* segments = skin->segments;
+    int line = segments[skin->list[*i]].line;
+    gathered best = {{TY_FLOAT_MAX, -1, line, 0.0f, 0.0f}, 0.0f};
+    for (; *i < end && segments[skin->list[*i]].line == line; ++*i)
     {
-        float at, d = segment_distance(&segments[list[*i]], p, &at);
+        float t, d = segment_distance(&segments[skin->list[*i]], p, &t);
         if (d < best.sample.distance)
-            best.sample = (roots_sample){d, list[*i], at, 0.0f};
+        {
+            best.sample.distance = d;
+            best.sample.segment = skin->list[*i];
+            best.sample.at = t;
+        }
     }
     const roots_segment* s = &segments[best.sample.segment];
-    best.radius = ty_lerp(s->a.r, s->b.r, best.sample.at);
+    best.radius = roots_segment_radius(s, best.sample.at);
     if (skin->recipe->bark > 0.0f && best.sample.distance < 2.0f * best.radius)
-        best.sample.distance -= relief(skin, s, best.sample.at, p);
+        best.sample.distance -= roots_skin_relief(skin, s, best.sample.at, p);
     return best;
 }
 
 static int block_at(const roots_skin* skin, ty_vec3 p)
 {
-    ty_vec3 q = ty_mul(ty_sub(p, skin->origin), 1.0f / (skin->step * BLOCK));
+    ty_vec3 q = ty_mul(ty_sub(p, skin->origin), 1.0f / (skin->step * TY_NET_BLOCK));
     int i = (int)floorf(q.x), j = (int)floorf(q.y), k = (int)floorf(q.z);
     if (i < 0 || j < 0 || k < 0 || i >= skin->blocks[0] || j >= skin->blocks[1] || k >= skin->blocks[2])
         return -1;
     return (k * skin->blocks[1] + j) * skin->blocks[0] + i;
 }
 
-static roots_sample sample_cut(const roots_skin* skin, roots_sample sample, ty_vec3 p)
+float roots_skin_cut(const roots_skin* skin, float distance, float y)
 {
-    float above = p.y - skin->lines->top;
-    float h = ty_clamp(0.5f - 0.5f * (sample.distance - above) / CUT_EDGE, 0.0f, 1.0f);
-    sample.distance = ty_lerp(sample.distance, above, h) + CUT_EDGE * h * (1.0f - h);
-    return sample;
+    float above = y - skin->network->top, edge = ty_max(CUT_EDGE, skin->step);
+    float h = ty_clamp(0.5f - 0.5f * (distance - above) / edge, 0.0f, 1.0f);
+    return ty_lerp(distance, above, h) + edge * h * (1.0f - h);
 }
 
-// root -1 = all.
-static roots_sample sample_at(const roots_skin* skin, ty_vec3 p, int root)
+// line -1 = all.
+static roots_sample sample_at(const roots_skin* skin, ty_vec3 p, int line)
 {
-    gathered all = {{TY_FLOAT_MAX, -1, 0.0f, 0.0f}, 0.0f};
+    gathered all = {{TY_FLOAT_MAX, -1, -1, 0.0f, 0.0f}, 0.0f};
     int block = block_at(skin, p);
     if (block < 0)
         return all.sample;
-    int end = skin->begin[block + 1];
-    for (int i = skin->begin[block]; i < end;)
+    int32_t end = skin->begin[block + 1];
+    for (int32_t i = skin->begin[block]; i < end;)
     {
-        int its = skin->lines->segments[skin->list[i]].root;
-        gathered one = root_nearest(skin, skin->list, end, &i, p);
-        if (root < 0 || its == root)
+        int its = skin->segments[skin->list[i]].line;
+        gathered one = line_nearest(skin, end, &i, p);
+        if (line < 0 || its == line)
             gather(skin, &all, &one);
     }
-    return all.sample.segment >= 0 ? sample_cut(skin, all.sample, p) : all.sample;
+    if (all.sample.segment < 0)
+        return all.sample;
+    all.sample.line = skin->segments[all.sample.segment].line;
+    all.sample.distance = roots_skin_cut(skin, all.sample.distance, p.y);
+    return all.sample;
 }
 
 roots_sample roots_skin_at(const roots_skin* skin, ty_vec3 p)
@@ -159,9 +154,9 @@ roots_sample roots_skin_at(const roots_skin* skin, ty_vec3 p)
     return sample_at(skin, p, -1);
 }
 
-roots_sample roots_skin_root_at(const roots_skin* skin, ty_vec3 p, int root)
+roots_sample roots_skin_line_at(const roots_skin* skin, ty_vec3 p, int line)
 {
-    return sample_at(skin, p, root);
+    return sample_at(skin, p, line);
 }
 
 ty_vec3 roots_skin_normal(const roots_skin* skin, ty_vec3 p)
@@ -179,109 +174,168 @@ ty_vec3 roots_skin_normal(const roots_skin* skin, ty_vec3 p)
     return ty_normalize(sum);
 }
 
+roots_point roots_skin_point(const roots_skin* skin, roots_sample sample)
+{
+    const roots_point* a = &skin->network->points[skin->segments[sample.segment].point];
+    const roots_point* b = a + 1;
+    float t = sample.at;
+    return (roots_point){.p = ty_lerp3(a->p, b->p, t),
+                         .n = ty_lerp3(a->n, b->n, t),
+                         .r = ty_lerp(a->r, b->r, t),
+                         .flat = ty_lerp(a->flat, b->flat, t),
+                         .sink = ty_lerp(a->sink, b->sink, t),
+                         .s = ty_lerp(a->s, b->s, t),
+                         .birth = ty_lerp(a->birth, b->birth, t)};
+}
+
 ty_vec2 roots_skin_uv(const roots_skin* skin, ty_vec3 p, roots_sample sample)
 {
-    const roots_segment* s = &skin->lines->segments[sample.segment];
-    roots_point axis = segment_point(s, sample.at);
-    ty_vec3 q = ty_sub(p, axis.p), t = ty_normalize(ty_sub(s->b.p, s->a.p));
+    roots_point axis = roots_skin_point(skin, sample);
+    ty_vec3 q = ty_sub(p, axis.p), t = ty_normalize(skin->segments[sample.segment].d);
     float angle = ty_atan2(ty_dot(q, ty_cross(t, axis.n)), ty_dot(q, axis.n));
     return (ty_vec2){0.5f + angle * (0.5f * TY_INV_PI), axis.s};
 }
 
-// --- blocks ---
+// --- segments ---
 
-static float segment_reach(const roots_skin* skin, const roots_segment* s)
+static roots_segment segment_make(const roots_point* a, const roots_point* b, int line, int point)
 {
-    const ty_roots_recipe* recipe = skin->recipe;
-    return ty_max(s->a.r, s->b.r) * (1.0f + 1.8f * recipe->bark + recipe->join) + 3.0f * skin->step;
+    ty_vec3 d = ty_sub(b->p, a->p);
+    float length = ty_length_sqr(d), ea = 1.0f / ty_sqr(a->flat) - 1.0f, eb = 1.0f / ty_sqr(b->flat) - 1.0f;
+    return (roots_segment){.a = a->p,
+                           .d = d,
+                           .na = a->n,
+                           .nd = ty_sub(b->n, a->n),
+                           .length_1 = length > 0.0f ? 1.0f / length : 0.0f,
+                           .ra = a->r,
+                           .rd = b->r - a->r,
+                           .ea = ea,
+                           .ed = eb - ea,
+                           .sink_a = a->sink * a->r,
+                           .sink_d = b->sink * b->r - a->sink * a->r,
+                           .line = line,
+                           .point = point};
+}
+
+static bool segments_make(roots_skin* skin)
+{
+    const roots_network* net = skin->network;
+    skin->segments = TY_TRY_ALLOC(roots_segment, net->point_count);
+    if (!skin->segments)
+        return false;
+    for (int line = 0; line < net->line_count; line++)
+        for (int i = 0; i + 1 < net->lines[line].count; i++)
+        {
+            int point = net->lines[line].first + i;
+            skin->segments[skin->segment_count++] =
+                segment_make(&net->points[point], &net->points[point + 1], line, point);
+        }
+    return true;
 }
 
 static ty_bounds segment_bounds(const roots_skin* skin, const roots_segment* s)
 {
-    float reach = segment_reach(skin, s);
-    ty_vec3 margin = {reach, reach, reach};
-    return (ty_bounds){ty_sub(ty_min3(s->a.p, s->b.p), margin), ty_add(ty_max3(s->a.p, s->b.p), margin)};
+    const ty_roots_recipe* recipe = skin->recipe;
+    float r = ty_max(s->ra, s->ra + s->rd);
+    float reach = r * (1.0f + ROOTS_RELIEF_MOST * recipe->bark + 0.25f * recipe->join) + 3.0f * skin->step;
+    ty_vec3 margin = {reach, reach, reach}, b = ty_add(s->a, s->d);
+    return (ty_bounds){ty_sub(ty_min3(s->a, b), margin), ty_add(ty_max3(s->a, b), margin)};
 }
+
+// --- blocks ---
 
 // Calls for each block that a segment reaches: counts, or writes where the count stands.
 static void blocks_visit(roots_skin* skin, int segment, bool write)
 {
-    ty_bounds b = segment_bounds(skin, &skin->lines->segments[segment]);
-    float scale = 1.0f / (skin->step * BLOCK);
+    ty_bounds b = segment_bounds(skin, &skin->segments[segment]);
+    float scale = 1.0f / (skin->step * TY_NET_BLOCK);
     ty_vec3 low = ty_mul(ty_sub(b.low, skin->origin), scale), high = ty_mul(ty_sub(b.high, skin->origin), scale);
     for (int k = (int)ty_max(low.z, 0.0f); k <= (int)high.z && k < skin->blocks[2]; k++)
         for (int j = (int)ty_max(low.y, 0.0f); j <= (int)high.y && j < skin->blocks[1]; j++)
             for (int i = (int)ty_max(low.x, 0.0f); i <= (int)high.x && i < skin->blocks[0]; i++)
             {
-                int* at = &skin->begin[(k * skin->blocks[1] + j) * skin->blocks[0] + i];
+                int32_t* at = &skin->begin[(k * skin->blocks[1] + j) * skin->blocks[0] + i];
                 if (write)
                     skin->list[*at] = segment;
                 ++*at;
             }
 }
 
-static ty_status blocks_fill(roots_skin* skin, ty_error* error)
+static bool blocks_fill(roots_skin* skin)
 {
     int count = skin->blocks[0] * skin->blocks[1] * skin->blocks[2];
-    skin->begin = TY_TRY_ALLOC(int, count + 1);
-    if (!skin->begin)
-        return ty_error_set(error, TY_NO_MEMORY, "no memory for %d blocks of roots", count);
-    for (int s = 0; s < skin->lines->count; s++)
-        blocks_visit(skin, s, false);
     int64_t sum = 0;
+    skin->begin = TY_TRY_ALLOC(int32_t, (int64_t)count + 1);
+    if (!skin->begin)
+        return false;
+    for (int s = 0; s < skin->segment_count; s++)
+        blocks_visit(skin, s, false);
     for (int b = 0; b <= count; b++)
     {
         int own = b < count ? skin->begin[b] : 0;
-        skin->begin[b] = (int)sum;
+        skin->active_count += own > 0;
+        skin->begin[b] = (int32_t)sum;
         sum += own;
     }
-    skin->list = sum < INT32_MAX ? TY_TRY_ALLOC(int, sum) : NULL;
-    if (!skin->list)
-        return ty_error_set(error, TY_NO_MEMORY, "no memory for %lld pieces of roots", (long long)sum);
-    for (int s = 0; s < skin->lines->count; s++)
+    skin->list = sum < INT32_MAX ? TY_TRY_ALLOC(int32_t, sum) : NULL;
+    skin->active = TY_TRY_ALLOC(int32_t, skin->active_count);
+    if (!skin->list || !skin->active)
+        return false;
+    for (int s = 0; s < skin->segment_count; s++)
         blocks_visit(skin, s, true);
-    memmove(skin->begin + 1, skin->begin, (size_t)count * sizeof(int)); // each stands at its end now
+    memmove(skin->begin + 1, skin->begin, (size_t)count * sizeof(int32_t)); // each stands at its end now
     skin->begin[0] = 0;
-    return TY_OK;
+    for (int b = 0, i = 0; b < count; b++)
+        if (skin->begin[b + 1] > skin->begin[b])
+            skin->active[i++] = b;
+    return true;
 }
 
 static ty_status size_plan(roots_skin* skin, ty_error* error)
 {
     ty_bounds all = ty_bounds_empty();
-    for (int s = 0; s < skin->lines->count; s++)
+    double blocks = 1.0;
+    for (int s = 0; s < skin->segment_count; s++)
     {
-        ty_bounds b = segment_bounds(skin, &skin->lines->segments[s]);
+        ty_bounds b = segment_bounds(skin, &skin->segments[s]);
         all.low = ty_min3(all.low, b.low);
         all.high = ty_max3(all.high, b.high);
     }
-    ty_vec3 size = ty_mul(ty_sub(all.high, all.low), 1.0f / skin->step);
-    double corners = ((double)size.x + 2.0) * ((double)size.y + 2.0) * ((double)size.z + 2.0);
-    if (!(corners < MOST_CORNERS))
-        return ty_error_set(error, TY_BAD_INPUT,
-                            "detail: %g mm; these roots would need %.3g cells, and there are at most %d million",
-                            (double)skin->step * 1e3, corners, MOST_CORNERS / 1000000);
+    if (skin->segment_count == 0)
+        return ty_error_set(error, TY_BAD_INPUT, "not a single root could be grown");
+    ty_vec3 size = ty_mul(ty_sub(all.high, all.low), 1.0f / (skin->step * TY_NET_BLOCK));
     const float extent[3] = {size.x, size.y, size.z};
     skin->origin = all.low;
     for (int i = 0; i < 3; i++)
-    {
-        skin->size[i] = (int)extent[i] + 2;
-        skin->blocks[i] = (skin->size[i] + BLOCK - 1) / BLOCK;
-    }
+        blocks *= (double)extent[i] + 1.0;
+    if (!(blocks < MOST_BLOCKS))
+        return ty_error_set(error, TY_BAD_INPUT, "detail: %g mm; for roots of this size it is at least %.3g mm",
+                            (double)skin->step * 1e3, (double)skin->step * 1e3 * cbrt(blocks / MOST_BLOCKS));
+    for (int i = 0; i < 3; i++)
+        skin->blocks[i] = (int)extent[i] + 1;
     return TY_OK;
 }
 
-ty_status roots_skin_create(const ty_roots_recipe* recipe, const roots_lines* lines, roots_skin** out, ty_error* error)
+// --- all of it ---
+
+ty_status roots_skin_create(const ty_roots_recipe* recipe, const roots_network* network, const roots_host* host,
+                            roots_skin** out, ty_error* error)
 {
     roots_skin* skin = TY_ALLOC(roots_skin, 1);
-    *skin = (roots_skin){.recipe = recipe, .lines = lines, .step = recipe->detail};
-    ty_status status = size_plan(skin, error);
-    if (status == TY_OK)
-        status = blocks_fill(skin, error);
-    *out = skin;
-    if (status == TY_OK)
-        return TY_OK;
+    *skin = (roots_skin){.recipe = recipe, .network = network, .host = host, .step = recipe->detail};
     *out = NULL;
-    roots_skin_destroy(skin);
+    ty_status status = TY_OK;
+    if (!segments_make(skin))
+        status = ty_error_set(error, TY_NO_MEMORY, "no memory for %d points of roots", network->point_count);
+    if (status == TY_OK)
+        status = size_plan(skin, error);
+    if (status == TY_OK && !blocks_fill(skin))
+        status =
+            ty_error_set(error, TY_NO_MEMORY, "no memory for the surface of %d points of roots", network->point_count);
+    if (status == TY_OK)
+        *out = skin;
+    else
+        roots_skin_destroy(skin);
     return status;
 }
 
@@ -289,67 +343,49 @@ void roots_skin_destroy(roots_skin* skin)
 {
     if (!skin)
         return;
+    ty_free(skin->segments);
     ty_free(skin->begin);
     ty_free(skin->list);
+    ty_free(skin->active);
     ty_free(skin);
 }
 
-// --- the grid ---
-
-typedef struct gridding
+ty_status roots_skin_mesh(const roots_skin* skin, ty_workers* workers, ty_mesh** out, ty_error* error)
 {
-    const roots_skin* skin;
-    roots_grid* grid;
-} gridding;
-
-static ty_vec3 corner_place(const roots_grid* grid, float i, float j, float k)
-{
-    return ty_mad(grid->origin, ty_vec3_make(i, j, k), grid->step);
-}
-
-// The distance changes by less than twice the way: relief and flat sections take it above one.
-static void block_fill(const roots_skin* skin, const roots_grid* grid, const int first[3])
-{
-    const float half = 0.5f * (BLOCK - 1), away = 2.0f * 1.7321f * half * grid->step;
-    ty_vec3 middle = corner_place(grid, (float)first[0] + half, (float)first[1] + half, (float)first[2] + half);
-    float distance = roots_skin_at(skin, middle).distance;
-    bool is_near = distance > -away && distance < away;
-    for (int k = first[2]; k < first[2] + BLOCK && k < grid->size[2]; k++)
-        for (int j = first[1]; j < first[1] + BLOCK && j < grid->size[1]; j++)
-            for (int i = first[0]; i < first[0] + BLOCK && i < grid->size[0]; i++)
-            {
-                size_t at = ((size_t)k * (size_t)grid->size[1] + (size_t)j) * (size_t)grid->size[0] + (size_t)i;
-                ty_vec3 p = corner_place(grid, (float)i, (float)j, (float)k);
-                grid->values[at] = is_near ? roots_skin_at(skin, p).distance : distance;
-            }
-}
-
-static void blocks_grid(void* context, int64_t begin, int64_t end, int worker)
-{
-    const gridding* g = context;
-    const int* blocks = g->skin->blocks;
-    (void)worker;
-    for (int64_t b = begin; b < end; b++)
+    enum
     {
-        const int first[3] = {(int)(b % blocks[0]) * BLOCK, (int)(b / blocks[0] % blocks[1]) * BLOCK,
-                              (int)(b / blocks[0] / blocks[1]) * BLOCK};
-        block_fill(g->skin, g->grid, first);
+        RELAX = 8, // rounds
+    };
+    const float corner = ty_radians(20.0f);
+    ty_net_def def = {.origin = skin->origin,
+                      .step = skin->step,
+                      .blocks = {skin->blocks[0], skin->blocks[1], skin->blocks[2]},
+                      .active = skin->active,
+                      .active_count = skin->active_count,
+                      .fill = roots_skin_fill,
+                      .context = (void*)skin};
+    double start = ty_time_now();
+    ty_net* net;
+    ty_net_pieces pieces = {0};
+    *out = NULL;
+    ty_status status = ty_net_create(&def, workers, &net, error);
+    if (status != TY_OK)
+        return status;
+    double cut = ty_time_now();
+    if (!ty_net_relax(net, RELAX, workers))
+        status = ty_error_set(error, TY_INTERRUPTED, "interrupted while the surface of roots was made");
+    if (status == TY_OK)
+        status = ty_net_mesh(net, out, &pieces, error);
+    ty_net_destroy(net);
+    if (status == TY_OK)
+        status = ty_mesh_mend_corners(*out, corner, NULL, error);
+    if (status == TY_OK)
+        ty_log(TY_LOG_DEBUG, "roots: surface found in %.2f s, relaxed in %.2f s; %d shells, %d voids", cut - start,
+               ty_time_now() - cut, pieces.shells, pieces.voids);
+    else
+    {
+        ty_mesh_destroy(*out);
+        *out = NULL;
     }
-}
-
-ty_status roots_skin_grid(const roots_skin* skin, ty_workers* workers, roots_grid* out, ty_error* error)
-{
-    *out = (roots_grid){.origin = skin->origin, .step = skin->step};
-    memcpy(out->size, skin->size, sizeof out->size);
-    size_t rows = (size_t)out->size[1] * (size_t)out->size[2];
-    out->values = TY_TRY_ALLOC(float, rows*(size_t)out->size[0]);
-    if (!out->values)
-        return ty_error_set(error, TY_NO_MEMORY, "no memory for %zu cells of roots", rows * (size_t)out->size[0]);
-    gridding g = {skin, out};
-    int64_t blocks = (int64_t)skin->blocks[0] * skin->blocks[1] * skin->blocks[2];
-    if (ty_parallel_for(workers, blocks, 256, blocks_grid, &g))
-        return TY_OK;
-    ty_free(out->values);
-    out->values = NULL;
-    return ty_error_set(error, TY_INTERRUPTED, "interrupted while the surface of roots was made");
+    return status;
 }

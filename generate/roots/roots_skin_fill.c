@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// The distance of roots at the nodes of a block: what is near the block, root by root, all nodes at a time.
+#include "roots_skin.h"
+
+enum
+{
+    NODES = TY_NET_NODES,
+    MOST_NEAR = 1024, // segments of one root that are looked at together
+};
+
+// Nodes of a block, and the nearest of one root or of all.
+typedef struct nodes
+{
+    float x[NODES], y[NODES], z[NODES];
+} nodes;
+
+typedef struct nearest
+{
+    float distance[NODES], t[NODES];
+    int32_t segment[NODES];
+} nearest;
+
+static void nodes_place(const roots_skin* skin, const int block[3], nodes* out)
+{
+    for (int i = 0; i < NODES; i++)
+    {
+        int x = i % TY_NET_BLOCK, y = i / TY_NET_BLOCK % TY_NET_BLOCK, z = i / TY_NET_BLOCK / TY_NET_BLOCK;
+        out->x[i] = skin->origin.x + skin->step * (float)(block[0] * TY_NET_BLOCK + x);
+        out->y[i] = skin->origin.y + skin->step * (float)(block[1] * TY_NET_BLOCK + y);
+        out->z[i] = skin->origin.z + skin->step * (float)(block[2] * TY_NET_BLOCK + z);
+    }
+}
+
+static void segment_meet(const roots_segment* restrict s, int32_t number, const nodes* restrict at,
+                         nearest* restrict best)
+{
+    for (int i = 0; i < NODES; i++)
+    {
+        float px = at->x[i] - s->a.x, py = at->y[i] - s->a.y, pz = at->z[i] - s->a.z;
+        float t = (px * s->d.x + py * s->d.y + pz * s->d.z) * s->length_1;
+        t = t < 0.0f ? 0.0f : t;
+        t = t > 1.0f ? 1.0f : t;
+        float qx = px - t * s->d.x, qy = py - t * s->d.y, qz = pz - t * s->d.z;
+        float h = qx * (s->na.x + t * s->nd.x) + qy * (s->na.y + t * s->nd.y) + qz * (s->na.z + t * s->nd.z);
+        float d = sqrtf(qx * qx + qy * qy + qz * qz + h * h * (s->ea + t * s->ed)) - (s->ra + t * s->rd);
+        bool nearer = d < best->distance[i];
+        best->distance[i] = nearer ? d : best->distance[i];
+        best->t[i] = nearer ? t : best->t[i];
+        best->segment[i] = nearer ? number : best->segment[i];
+    }
+}
+
+// --- what is near ---
+
+typedef struct range
+{
+    float least, most; // bounds of a distance over a block
+} range;
+
+// Half the diagonal of a block, m.
+static float block_half(const roots_skin* skin)
+{
+    return 0.5f * 1.7321f * (TY_NET_BLOCK - 1) * skin->step;
+}
+
+static range segment_range(const roots_segment* s, ty_vec3 middle, float half)
+{
+    float t = ty_clamp(ty_dot(ty_sub(middle, s->a), s->d) * s->length_1, 0.0f, 1.0f);
+    float q = ty_length(ty_sub(middle, ty_mad(s->a, s->d, t)));
+    float stretch = sqrtf(1.0f + ty_max(s->ea, s->ea + s->ed)) * 1.05f; // normals between points are a bit off unit
+    float most = ty_max(s->ra, s->ra + s->rd), least = ty_min(s->ra, s->ra + s->rd);
+    return (range){q - half - most, (q + half) * stretch - least};
+}
+
+// --- roots together ---
+
+static float radius_at(const roots_skin* skin, const nearest* n, int i)
+{
+    return roots_segment_radius(&skin->segments[n->segment[i]], n->t[i]);
+}
+
+static void relief_add(const roots_skin* skin, const nodes* at, nearest* n)
+{
+    for (int i = 0; i < NODES; i++)
+    {
+        const roots_segment* s = &skin->segments[n->segment[i]];
+        float reach = ROOTS_RELIEF_MOST * skin->recipe->bark * roots_segment_radius(s, n->t[i]) + 2.0f * skin->step;
+        if (fabsf(n->distance[i]) < reach)
+            n->distance[i] -= roots_skin_relief(skin, s, n->t[i], ty_vec3_make(at->x[i], at->y[i], at->z[i]));
+    }
+}
+
+typedef struct together
+{
+    float distance[NODES], radius[NODES];
+    bool any;
+} together;
+
+static void together_take(const roots_skin* skin, together* all, const nearest* one)
+{
+    for (int i = 0; i < NODES; i++)
+    {
+        float r = radius_at(skin, one, i), d = one->distance[i];
+        if (!all->any)
+        {
+            all->distance[i] = d;
+            all->radius[i] = r;
+            continue;
+        }
+        float k = ty_max(skin->recipe->join * ty_min(all->radius[i], r), 1e-9f);
+        float h = ty_clamp(0.5f + 0.5f * (all->distance[i] - d) / k, 0.0f, 1.0f);
+        all->distance[i] = ty_lerp(all->distance[i], d, h) - k * h * (1.0f - h);
+        all->radius[i] = ty_lerp(all->radius[i], r, h);
+    }
+    all->any = true;
+}
+
+static void top_cut(const roots_skin* skin, const nodes* at, const together* all, float values[NODES])
+{
+    for (int i = 0; i < NODES; i++)
+        values[i] = roots_skin_cut(skin, all->distance[i], at->y[i]);
+}
+
+static void block_fill(const roots_skin* skin, const int block[3], int32_t begin, int32_t end, float nearby,
+                       ty_vec3 middle, float values[NODES])
+{
+    nodes at;
+    nearest one;
+    together all = {.any = false};
+    float half = block_half(skin);
+    nodes_place(skin, block, &at);
+    for (int32_t i = begin; i < end;)
+    {
+        int line = skin->segments[skin->list[i]].line;
+        bool met = false;
+        for (; i < end && skin->segments[skin->list[i]].line == line; i++)
+        {
+            const roots_segment* s = &skin->segments[skin->list[i]];
+            if (segment_range(s, middle, half).least > nearby)
+                continue;
+            for (int k = 0; !met && k < NODES; k++)
+                one.distance[k] = TY_FLOAT_MAX;
+            met = true;
+            segment_meet(s, skin->list[i], &at, &one);
+        }
+        if (!met)
+            continue;
+        if (skin->recipe->bark > 0.0f)
+            relief_add(skin, &at, &one);
+        together_take(skin, &all, &one);
+    }
+    top_cut(skin, &at, &all, values);
+}
+
+void roots_skin_fill(void* context, const int block[3], float values[NODES])
+{
+    const roots_skin* skin = context;
+    int number = (block[2] * skin->blocks[1] + block[1]) * skin->blocks[0] + block[0];
+    int32_t begin = skin->begin[number], end = skin->begin[number + 1];
+    const float middle = 0.5f * (TY_NET_BLOCK - 1);
+    ty_vec3 at = {(float)(block[0] * TY_NET_BLOCK) + middle, (float)(block[1] * TY_NET_BLOCK) + middle,
+                  (float)(block[2] * TY_NET_BLOCK) + middle};
+    at = ty_mad(skin->origin, at, skin->step);
+    range all = {TY_FLOAT_MAX, TY_FLOAT_MAX};
+    float wide = 0.0f; // the thickest root
+    for (int32_t i = begin; i < end; i++)
+    {
+        const roots_segment* s = &skin->segments[skin->list[i]];
+        range one = segment_range(s, at, block_half(skin));
+        all = (range){ty_min(all.least, one.least), ty_min(all.most, one.most)};
+        wide = ty_max(wide, ty_max(s->ra, s->ra + s->rd));
+    }
+    float reach = 2.0f * skin->step + ROOTS_RELIEF_MOST * skin->recipe->bark * wide, join = skin->recipe->join * wide;
+    bool cut = at.y + block_half(skin) > skin->network->top - reach;
+    if (all.least > reach + join || (all.most < -reach && !cut))
+    {
+        float value = all.least > 0.0f ? all.least : all.most;
+        for (int i = 0; i < NODES; i++)
+            values[i] = value;
+        return;
+    }
+    block_fill(skin, block, begin, end, ty_max(all.most, reach) + join + reach, at, values);
+}
