@@ -5,6 +5,7 @@
 #include <tsuya/generate/roots_recipe.h>
 #include <tsuya/geometry/surface_net.h>
 #include <tsuya/geometry/trace.h>
+#include <tsuya/geometry/voxels.h>
 
 // --- host ---
 
@@ -13,6 +14,7 @@ typedef struct roots_host
     ty_mesh* mesh;
     ty_world* world;
     uint32_t prototype;
+    ty_voxels field; // signed distance
     bool has_floor;
     float floor; // y
 } roots_host;
@@ -20,9 +22,14 @@ typedef struct roots_host
 // On failure *out is zeroed.
 TY_CHECKED ty_status roots_host_init(const ty_roots_host_def* def, roots_host* out, ty_error* error);
 void roots_host_term(roots_host* host);
-// Signed distance to host and floor, run together over `blend` metres, no farther than `reach` (then reach and up), and
-// its gradient.
-float roots_host_distance(const roots_host* host, ty_vec3 p, float reach, float blend, ty_vec3* normal);
+// Signed distance to host and floor from the field, with its gradient, which is not quite unit (NULL is allowed). Any
+// thread.
+float roots_host_value(const roots_host* host, ty_vec3 p, ty_vec3* gradient);
+// The closest point of the mesh itself, where it lies within reach, or of the floor; else the field. *normal is unit
+// and points away. Any thread.
+float roots_host_exact(const roots_host* host, ty_vec3 p, float reach, ty_vec3* normal);
+// p moved to a height over the host, by the field. *normal is unit, away from it.
+ty_vec3 roots_host_project(const roots_host* host, ty_vec3 p, float height, ty_vec3* normal);
 
 // --- the network ---
 
@@ -75,8 +82,8 @@ void roots_network_term(roots_network* network);
 int roots_network_add_line(roots_network* network, const roots_line* line);
 void roots_network_add_point(roots_network* network, const roots_point* point);
 
-TY_CHECKED ty_status roots_grow(const ty_roots_recipe* recipe, const roots_host* host, roots_network* out,
-                                ty_error* error);
+TY_CHECKED ty_status roots_grow(const ty_roots_recipe* recipe, const roots_host* host, ty_workers* workers,
+                                roots_network* out, ty_error* error);
 
 // --- surface ---
 

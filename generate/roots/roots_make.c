@@ -10,11 +10,47 @@ typedef struct dressing
 {
     const roots_skin* skin;
     const roots_network* network;
+    const roots_host* host;
     const ty_roots_recipe* recipe;
     ty_mesh* mesh;
     roots_sample* samples; // [vertex_count]
     float *radius, *level, *join;
 } dressing;
+
+// The field is an approximation: what lies near the host is held against the mesh itself.
+// True there.
+static bool depth_keep(const roots_host* host, const roots_point* own, ty_vec3* p)
+{
+    float most = own->sink * own->r;
+    ty_vec3 n;
+    if (roots_host_value(host, *p, NULL) > 2.0f * host->field.step - most)
+        return false;
+    float height = roots_host_exact(host, *p, most + 2.0f * host->field.step, &n);
+    if (height < -most)
+        *p = ty_mad(*p, n, -most - height);
+    return true;
+}
+
+// Where the field has said nothing, normals are those of the triangles.
+static void normals_fill(ty_mesh* mesh)
+{
+    bool* open = TY_ALLOC(bool, mesh->vertex_count);
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+        open[v] = ty_length_sqr(mesh->normals[v]) == 0.0f;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+    {
+        const uint32_t* c = mesh->triangles[t];
+        ty_vec3 p = mesh->positions[c[0]];
+        ty_vec3 n = ty_cross(ty_sub(mesh->positions[c[1]], p), ty_sub(mesh->positions[c[2]], p));
+        for (int k = 0; k < 3; k++)
+            if (open[c[k]])
+                mesh->normals[c[k]] = ty_add(mesh->normals[c[k]], n);
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+        if (open[v])
+            mesh->normals[v] = ty_normalize(mesh->normals[v]);
+    ty_free(open);
+}
 
 static int level_of(roots_kind kind)
 {
@@ -33,10 +69,11 @@ static void vertices_dress(void* context, int64_t begin, int64_t end, int worker
         // Interpolation along an edge leaves a part of a cell: one step of Newton's, held within the cell.
         float most = 0.2f * d->recipe->detail;
         *p = ty_mad(*p, n, -ty_clamp(sample.distance, -most, most));
-        d->mesh->normals[v] = n;
+        roots_point own = roots_skin_point(d->skin, sample);
+        d->mesh->normals[v] = depth_keep(d->host, &own, p) ? (ty_vec3){0.0f, 0.0f, 0.0f} : n;
         d->mesh->uvs[v] = roots_skin_uv(d->skin, *p, sample);
         d->samples[v] = sample;
-        d->radius[v] = roots_skin_point(d->skin, sample).r;
+        d->radius[v] = own.r;
         d->level[v] = (float)level_of(d->network->lines[sample.line].kind);
         d->join[v] = sample.join;
     }
@@ -148,6 +185,8 @@ static ty_status dress(dressing d, ty_workers* workers, ty_mesh** mesh, ty_error
     ty_status status = TY_OK;
     if (!ty_parallel_for(workers, count, 1024, vertices_dress, &d))
         status = ty_error_set(error, TY_INTERRUPTED, "interrupted while roots were finished");
+    if (status == TY_OK)
+        normals_fill(*mesh);
     for (uint32_t t = 0; t < (*mesh)->triangle_count && status == TY_OK; t++)
         triangle_seams(&d, t, &s);
     ty_mesh* done = status == TY_OK && !s.failed ? split(*mesh, &s) : NULL;
@@ -162,6 +201,14 @@ static ty_status dress(dressing d, ty_workers* workers, ty_mesh** mesh, ty_error
 
 // --- all of it ---
 
+static ty_status share_check(const char* name, const float share[2], ty_error* error)
+{
+    if (share[0] <= share[1])
+        return TY_OK;
+    return ty_error_set(error, TY_BAD_INPUT, "%s.share: [%g, %g]; the first is at most the second", name,
+                        (double)share[0], (double)share[1]);
+}
+
 static ty_status recipe_check(const ty_roots_recipe* r, ty_error* error)
 {
     if (!(r->tip <= r->radius))
@@ -170,10 +217,10 @@ static ty_status recipe_check(const ty_roots_recipe* r, ty_error* error)
     if (!(r->detail <= r->tip))
         return ty_error_set(error, TY_BAD_INPUT, "detail: %g mm; it is at most the tip, %g mm", (double)r->detail * 1e3,
                             (double)r->tip * 1e3);
-    if (!(r->branch.share[0] <= r->branch.share[1]))
-        return ty_error_set(error, TY_BAD_INPUT, "branch.share: [%g, %g]; the first is at most the second",
-                            (double)r->branch.share[0], (double)r->branch.share[1]);
-    return TY_OK;
+    ty_status status = share_check("first", r->first.share, error);
+    if (status == TY_OK)
+        status = share_check("second", r->second.share, error);
+    return status == TY_OK ? share_check("aerial", r->aerial.share, error) : status;
 }
 
 static ty_status surface_make(const ty_roots_recipe* recipe, const roots_network* network, const roots_host* host,
@@ -186,7 +233,7 @@ static ty_status surface_make(const ty_roots_recipe* recipe, const roots_network
     status = roots_skin_mesh(skin, workers, out, error);
     if (status == TY_OK)
     {
-        dressing d = {.skin = skin, .network = network, .recipe = recipe};
+        dressing d = {.skin = skin, .network = network, .host = host, .recipe = recipe};
         status = dress(d, workers, out, error);
     }
     roots_skin_destroy(skin);
@@ -205,7 +252,7 @@ ty_status ty_roots_make(const void* def, ty_workers* workers, ty_mesh** out, ty_
         status = roots_host_init(&recipe->host, &host, error);
     if (status != TY_OK)
         return status;
-    status = roots_grow(recipe, &host, &network, error);
+    status = roots_grow(recipe, &host, workers, &network, error);
     double grown = ty_time_now();
     if (status == TY_OK)
         status = surface_make(recipe, &network, &host, workers, out, error);

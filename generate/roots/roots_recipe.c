@@ -14,15 +14,22 @@ ty_roots_recipe ty_roots_recipe_default(void)
         .tip = 0.7e-3f,
         .taper = 0.2f,
         .length = 0.35f,
-        .growth = {.inertia = 0.8f,
-                   .gravity = 0.14f,
-                   .wander = 0.13f,
+        .growth = {.gravity = 0.6f,
+                   .wander = 0.9f,
+                   .repel = 0.5f,
+                   .stiffness = 4.0f,
+                   .wave = 9.0f,
+                   .distance = 5.0f,
                    .hold = 1.5f,
                    .overhang = ty_radians(35.0f),
                    .sink = 0.25f,
                    .flatten = 0.75f},
-        .branch =
-            {.spacing = 0.024f, .angle = ty_radians(42.0f), .share = {0.45f, 0.75f}, .exponent = 2.3f, .levels = 3},
+        .first = {.spacing = 0.02f, .reach = 0.05f, .slant = 0.7f, .share = {0.4f, 0.75f}, .wander = 0.12f},
+        .second = {.spacing = 0.03f, .reach = 0.04f, .slant = 0.3f, .share = {0.5f, 0.8f}, .wander = 0.1f},
+        .aerial = {.count = 0, .share = {0.3f, 0.5f}},
+        .cover = {.spacing = 0.0f, .radius = 0.8e-3f},
+        .exponent = 2.3f,
+        .flare = 0.5f,
         .join = 0.8f,
         .bark = 0.08f,
         .detail = 0.6e-3f,
@@ -84,9 +91,12 @@ static void set_growth_table(void* def)
 
 #define OWNER ty_roots_growth_def
 static const ty_param growth_rows[] = {
-    FIELD("inertia", TY_PARAM_FLOAT, "", 0, 1, inertia, "weight of the direction so far"),
-    FIELD("gravity", TY_PARAM_FLOAT, "", 0, 1, gravity, "weight of down"),
-    FIELD("wander", TY_PARAM_FLOAT, "", 0, 1, wander, "weight of chance"),
+    FIELD("gravity", TY_PARAM_FLOAT, "", 0, 10, gravity, "weight of down in how a tip turns"),
+    FIELD("wander", TY_PARAM_FLOAT, "", 0, 10, wander, "weight of chance"),
+    FIELD("repel", TY_PARAM_FLOAT, "", -10, 10, repel, "weight of keeping away from other main roots; < 0: of joining"),
+    FIELD("stiffness", TY_PARAM_FLOAT, "", 1, 100, stiffness, "length in which a root turns, of its radius"),
+    FIELD("wave", TY_PARAM_FLOAT, "", 1, 1000, wave, "length in which chance changes, of the radius"),
+    FIELD("distance", TY_PARAM_FLOAT, "", 1, 100, distance, "how far other main roots are felt, of the radius"),
     FIELD("hold", TY_PARAM_FLOAT, "", 0, 100, hold, "how far from the host a root still takes to it, of its radius"),
     FIELD("overhang", TY_PARAM_FLOAT, "deg", 0, 90, overhang, "undersides steeper than this are let go; 90 = none"),
     FIELD("sink", TY_PARAM_FLOAT, "", 0, 0.9, sink, "depth under the surface of the host, of the radius"),
@@ -97,20 +107,52 @@ TABLE(growth_table, "roots.growth", "How a tip finds its way.", growth_rows);
 
 // --- branches ---
 
-static void set_branch_table(void* def)
+static void set_first_table(void* def)
 {
-    *(ty_roots_branch_def*)def = ty_roots_recipe_default().branch;
+    *(ty_roots_link_def*)def = ty_roots_recipe_default().first;
 }
 
-#define OWNER ty_roots_branch_def
-static const ty_param branch_rows[] = {
-    FIELD("spacing", TY_PARAM_FLOAT, "mm", 1, 1e6, spacing, "mean length of a root between its branches"),
-    FIELD("angle", TY_PARAM_FLOAT, "deg", 5, 85, angle, "mean, from the parent's direction"),
-    FIELD("share", TY_PARAM_FLOAT2, "", 0.1, 0.95, share, "radius of a branch against its parent's: from, to"),
-    FIELD("exponent", TY_PARAM_FLOAT, "", 1.5, 3, exponent, "n of the pipe model: r^n is the sum of those after it"),
-    FIELD("levels", TY_PARAM_INT, "", 0, 8, levels, "0 = main roots alone, 1 = with their branches, ..."),
+static void set_second_table(void* def)
+{
+    *(ty_roots_link_def*)def = ty_roots_recipe_default().second;
+}
+
+#define OWNER ty_roots_link_def
+static const ty_param link_rows[] = {
+    FIELD("spacing", TY_PARAM_FLOAT, "mm", 0, 1e6, spacing, "mean length of the parent between them; 0 = none"),
+    FIELD("reach", TY_PARAM_FLOAT, "mm", 0, 1e6, reach, "how far a partner may be"),
+    FIELD("slant", TY_PARAM_FLOAT, "", -2, 2, slant, "how much farther down they end, of the way across"),
+    FIELD("share", TY_PARAM_FLOAT2, "", 0.1, 0.95, share, "radius against the thinner of both: from, to"),
+    FIELD("wander", TY_PARAM_FLOAT, "", 0, 1, wander, "how far they swing to the side, of the way across"),
 };
-TABLE(branch_table, "roots.branch", "How roots divide.", branch_rows);
+TABLE(first_table, "roots.first", "Branches from a main root to the next.", link_rows);
+TABLE(second_table, "roots.second", "Branches between first branches.", link_rows);
+#undef OWNER
+
+static void set_aerial_table(void* def)
+{
+    *(ty_roots_aerial_def*)def = ty_roots_recipe_default().aerial;
+}
+
+#define OWNER ty_roots_aerial_def
+static const ty_param aerial_rows[] = {
+    FIELD("count", TY_PARAM_INT, "", 0, 1000, count, "of roots that hang from the host"),
+    FIELD("share", TY_PARAM_FLOAT2, "", 0.02, 1, share, "radius against a main root's: from, to"),
+};
+TABLE(aerial_table, "roots.aerial", "Roots that hang free until they find ground.", aerial_rows);
+#undef OWNER
+
+static void set_cover_table(void* def)
+{
+    *(ty_roots_cover_def*)def = ty_roots_recipe_default().cover;
+}
+
+#define OWNER ty_roots_cover_def
+static const ty_param cover_rows[] = {
+    FIELD("spacing", TY_PARAM_FLOAT, "mm", 0, 1e6, spacing, "between places that fine roots grow towards; 0 = none"),
+    FIELD("radius", TY_PARAM_FLOAT, "mm", 0.05, 1e6, radius, "of a fine root"),
+};
+TABLE(cover_table, "roots.cover", "Fine roots over what is left of the host, by space colonisation.", cover_rows);
 #undef OWNER
 
 // --- the recipe ---
@@ -129,9 +171,14 @@ static const ty_param recipe_rows[] = {
     FIELD("variation", TY_PARAM_FLOAT, "", 0, 0.8, variation, "of the radii, relative"),
     FIELD("tip", TY_PARAM_FLOAT, "mm", 0.05, 1e6, tip, "radius at which a root ends"),
     FIELD("taper", TY_PARAM_FLOAT, "m", 1e-3, 1e6, taper, "length over which a radius falls to 37 %"),
-    FIELD("length", TY_PARAM_FLOAT, "m", 1e-3, 1e6, length, "of a root at most"),
+    FIELD("length", TY_PARAM_FLOAT, "m", 1e-3, 1e6, length, "of a main root at most"),
     GROUP("growth", &growth_table, growth, "how they find their way"),
-    GROUP("branch", &branch_table, branch, "how they divide"),
+    GROUP("first", &first_table, first, "branches from a main root to the next"),
+    GROUP("second", &second_table, second, "branches between first branches"),
+    GROUP("aerial", &aerial_table, aerial, "roots that hang free"),
+    GROUP("cover", &cover_table, cover, "fine roots over what is left"),
+    FIELD("exponent", TY_PARAM_FLOAT, "", 1.5, 3, exponent, "n of the pipe model: r^n is the sum of those after it"),
+    FIELD("flare", TY_PARAM_FLOAT, "", 0, 2, flare, "how much thicker branches begin, of their radius"),
     FIELD("join", TY_PARAM_FLOAT, "", 0, 2, join, "over which distance roots run together, of the thinner's radius"),
     FIELD("bark", TY_PARAM_FLOAT, "", 0, 0.4, bark, "depth of flutes and swellings, of the radius"),
     FIELD("detail", TY_PARAM_FLOAT, "mm", 0.02, 1e6, detail, "size of the surface's cells, at most the tip"),

@@ -62,8 +62,8 @@ float roots_skin_relief(const roots_skin* skin, const roots_segment* s, float t,
 
 typedef struct gathered
 {
-    roots_sample sample; // its segment is an index into the skin's
-    float radius;
+    roots_sample sample;
+    float radius, depth;
 } gathered;
 
 // The polynomial smooth minimum (Quilez) over a width in proportion to the thinner of both.
@@ -86,6 +86,7 @@ static void gather(const roots_skin* skin, gathered* all, const gathered* one)
     all->sample.join = ty_max(ty_max(all->sample.join, one->sample.join) * (1.0f - mixed), mixed);
     all->sample.distance = distance;
     all->radius = ty_lerp(all->radius, one->radius, h);
+    all->depth = ty_lerp(all->depth, one->depth, h);
 }
 
 // The nearest of a root's segments from list[*i] on; *i goes on to the next root.
@@ -93,7 +94,7 @@ static gathered line_nearest(const roots_skin* skin, int32_t end, int32_t* i, ty
 {
     const roots_segment* segments = skin->segments;
     int line = segments[skin->list[*i]].line;
-    gathered best = {{TY_FLOAT_MAX, -1, line, 0.0f, 0.0f}, 0.0f};
+    gathered best = {{TY_FLOAT_MAX, -1, line, 0.0f, 0.0f}, 0.0f, 0.0f};
     for (; *i < end && segments[skin->list[*i]].line == line; ++*i)
     {
         float t, d = segment_distance(&segments[skin->list[*i]], p, &t);
@@ -106,9 +107,17 @@ static gathered line_nearest(const roots_skin* skin, int32_t end, int32_t* i, ty
     }
     const roots_segment* s = &segments[best.sample.segment];
     best.radius = roots_segment_radius(s, best.sample.at);
+    best.depth = roots_segment_depth(s, best.sample.at);
     if (skin->recipe->bark > 0.0f && best.sample.distance < 2.0f * best.radius)
         best.sample.distance -= roots_skin_relief(skin, s, best.sample.at, p);
     return best;
+}
+
+float roots_skin_hold(const roots_skin* skin, float distance, float depth, float radius, ty_vec3 p)
+{
+    float over = -(roots_host_value(skin->host, p, NULL) + depth), edge = ty_max(0.3f * radius, skin->step);
+    float h = ty_clamp(0.5f - 0.5f * (distance - over) / edge, 0.0f, 1.0f);
+    return ty_lerp(distance, over, h) + edge * h * (1.0f - h);
 }
 
 static int block_at(const roots_skin* skin, ty_vec3 p)
@@ -130,7 +139,7 @@ float roots_skin_cut(const roots_skin* skin, float distance, float y)
 // line -1 = all.
 static roots_sample sample_at(const roots_skin* skin, ty_vec3 p, int line)
 {
-    gathered all = {{TY_FLOAT_MAX, -1, -1, 0.0f, 0.0f}, 0.0f};
+    gathered all = {{TY_FLOAT_MAX, -1, -1, 0.0f, 0.0f}, 0.0f, 0.0f};
     int block = block_at(skin, p);
     if (block < 0)
         return all.sample;
@@ -145,6 +154,8 @@ static roots_sample sample_at(const roots_skin* skin, ty_vec3 p, int line)
     if (all.sample.segment < 0)
         return all.sample;
     all.sample.line = skin->segments[all.sample.segment].line;
+    if (line < 0 && skin->host && all.sample.distance < all.radius)
+        all.sample.distance = roots_skin_hold(skin, all.sample.distance, all.depth, all.radius, p);
     all.sample.distance = roots_skin_cut(skin, all.sample.distance, p.y);
     return all.sample;
 }

@@ -41,6 +41,14 @@ float roots_skin_relief(const roots_skin* skin, const roots_segment* segment, fl
 // The largest that it gets, of the radius.
 #define ROOTS_RELIEF_MOST 1.65f
 
+static inline float roots_segment_depth(const roots_segment* s, float t)
+{
+    return s->sink_a + t * s->sink_d;
+}
+
+// The distance of what is left of a root where it would reach deeper than `depth` under the host; p is near its
+// surface.
+float roots_skin_hold(const roots_skin* skin, float distance, float depth, float radius, ty_vec3 p);
 // The distance where the trunk is cut off at the top.
 float roots_skin_cut(const roots_skin* skin, float distance, float y);
 void roots_skin_fill(void* skin, const int block[3], float values[TY_NET_NODES]); // a ty_net_fill

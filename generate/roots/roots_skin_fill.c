@@ -74,11 +74,6 @@ static range segment_range(const roots_segment* s, ty_vec3 middle, float half)
 
 // --- roots together ---
 
-static float radius_at(const roots_skin* skin, const nearest* n, int i)
-{
-    return roots_segment_radius(&skin->segments[n->segment[i]], n->t[i]);
-}
-
 static void relief_add(const roots_skin* skin, const nodes* at, nearest* n)
 {
     for (int i = 0; i < NODES; i++)
@@ -92,7 +87,7 @@ static void relief_add(const roots_skin* skin, const nodes* at, nearest* n)
 
 typedef struct together
 {
-    float distance[NODES], radius[NODES];
+    float distance[NODES], radius[NODES], depth[NODES];
     bool any;
 } together;
 
@@ -100,19 +95,33 @@ static void together_take(const roots_skin* skin, together* all, const nearest* 
 {
     for (int i = 0; i < NODES; i++)
     {
-        float r = radius_at(skin, one, i), d = one->distance[i];
+        const roots_segment* s = &skin->segments[one->segment[i]];
+        float r = roots_segment_radius(s, one->t[i]), d = one->distance[i], depth = roots_segment_depth(s, one->t[i]);
         if (!all->any)
         {
             all->distance[i] = d;
             all->radius[i] = r;
+            all->depth[i] = depth;
             continue;
         }
         float k = ty_max(skin->recipe->join * ty_min(all->radius[i], r), 1e-9f);
         float h = ty_clamp(0.5f + 0.5f * (all->distance[i] - d) / k, 0.0f, 1.0f);
         all->distance[i] = ty_lerp(all->distance[i], d, h) - k * h * (1.0f - h);
         all->radius[i] = ty_lerp(all->radius[i], r, h);
+        all->depth[i] = ty_lerp(all->depth[i], depth, h);
     }
     all->any = true;
+}
+
+// Where the block may reach under the host.
+static void host_cut(const roots_skin* skin, const nodes* at, ty_vec3 middle, together* all)
+{
+    if (!skin->host || roots_host_value(skin->host, middle, NULL) > 1.2f * block_half(skin) + 2.0f * skin->step)
+        return;
+    for (int i = 0; i < NODES; i++)
+        if (all->distance[i] < all->radius[i])
+            all->distance[i] = roots_skin_hold(skin, all->distance[i], all->depth[i], all->radius[i],
+                                               ty_vec3_make(at->x[i], at->y[i], at->z[i]));
 }
 
 static void top_cut(const roots_skin* skin, const nodes* at, const together* all, float values[NODES])
@@ -149,6 +158,7 @@ static void block_fill(const roots_skin* skin, const int block[3], int32_t begin
             relief_add(skin, &at, &one);
         together_take(skin, &all, &one);
     }
+    host_cut(skin, &at, middle, &all);
     top_cut(skin, &at, &all, values);
 }
 
@@ -171,7 +181,8 @@ void roots_skin_fill(void* context, const int block[3], float values[NODES])
         wide = ty_max(wide, ty_max(s->ra, s->ra + s->rd));
     }
     float reach = 2.0f * skin->step + ROOTS_RELIEF_MOST * skin->recipe->bark * wide, join = skin->recipe->join * wide;
-    bool cut = at.y + block_half(skin) > skin->network->top - reach;
+    float half = block_half(skin), under = skin->host ? roots_host_value(skin->host, at, NULL) : TY_FLOAT_MAX;
+    bool cut = at.y + half > skin->network->top - reach || under < 1.2f * half + 2.0f * skin->step;
     if (all.least > reach + join || (all.most < -reach && !cut))
     {
         float value = all.least > 0.0f ? all.least : all.most;

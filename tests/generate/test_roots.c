@@ -76,7 +76,9 @@ static void a_free_root_has_its_volume(void** state)
     recipe.variation = 0.0f;
     recipe.growth.wander = 0.0f;
     recipe.growth.gravity = 1.0f;
-    recipe.branch.levels = 0;
+    recipe.growth.flatten = 1.0f;
+    recipe.growth.sink = 0.0f;
+    recipe.first.spacing = 0.0f;
     recipe.radius = 4e-3f;
     recipe.taper = 0.05f;
     recipe.bark = 0.0f;
@@ -84,10 +86,10 @@ static void a_free_root_has_its_volume(void** state)
     ty_mesh* mesh = make(&recipe, NULL);
     ty_mesh_topology topology;
     ty_mesh_analyse(mesh, &topology);
-    // half of its first ball is cut off with the trunk; what is left of the cone is closed by half a ball of the tip
-    double r0 = 4e-3, r1 = 1.2e-3, cone = 0.5 * M_PI * 0.05 * (r0 * r0 - r1 * r1),
-           tip = 2.0 / 3.0 * M_PI * r1 * r1 * r1;
-    assert_float_equal((float)(topology.volume / (cone + tip)), 1.0f, 0.04f);
+    // half a ball closes the cone at either end
+    double r0 = 4e-3, r1 = 1.2e-3, cone = 0.5 * M_PI * 0.05 * (r0 * r0 - r1 * r1);
+    double ends = 2.0 / 3.0 * M_PI * (r0 * r0 * r0 + r1 * r1 * r1);
+    assert_float_equal((float)(topology.volume / (cone + ends)), 1.0f, 0.04f);
     float length = 0.05f * ty_ln(4.0f / 1.2f), lowest = -mesh->bounds.low.y;
     assert_float_equal(lowest, length, 0.05f * length + 2e-3f); // it set out aslant
     ty_mesh_destroy(mesh);
@@ -216,11 +218,11 @@ static void impossible_ones_are_refused(void** state)
     assert_int_equal(ty_roots_make(&recipe, NULL, &mesh, &error), TY_BAD_INPUT);
     assert_non_null(strstr(error.text, "detail: 1.3 mm"));
     recipe = coarse();
-    recipe.detail = 2e-5f;
+    recipe.detail = 2e-6f;
     assert_int_equal(ty_roots_make(&recipe, NULL, &mesh, &error), TY_BAD_INPUT);
-    assert_non_null(strstr(error.text, "cells"));
+    assert_non_null(strstr(error.text, "at least"));
     recipe = coarse();
-    recipe.branch.share[0] = 0.9f;
+    recipe.first.share[0] = 0.9f;
     assert_int_equal(ty_roots_make(&recipe, NULL, &mesh, &error), TY_BAD_INPUT);
     recipe = coarse();
     recipe.host.shape.radius = 0.0f;
@@ -238,7 +240,7 @@ static void memory_may_end_anywhere(void** state)
     (void)state;
     ty_roots_recipe recipe = coarse();
     recipe.count = 2;
-    recipe.branch.levels = 0;
+    recipe.first.spacing = 0.0f;
     ty_status status = TY_NO_MEMORY;
     for (long i = 0; status != TY_OK && i < 200; i++)
     {

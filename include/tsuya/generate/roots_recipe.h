@@ -33,23 +33,39 @@ typedef struct ty_roots_trunk_def
 
 typedef struct ty_roots_growth_def
 {
-    float inertia;  // weights of the next direction: the last one,
-    float gravity;  // down,
-    float wander;   // and chance
-    float hold;     // how far from the host a root still takes to it, of its radius
-    float overhang; // rad, from the horizontal: steeper undersides are let go
-    float sink;     // depth under the host's surface, of the radius, 0..0.9
-    float flatten;  // height of a section that lies on the host against its width, 0.3..1
+    float gravity;   // weights of what turns a tip: down,
+    float wander;    // chance,
+    float repel;     // and other main roots, away from them (below 0: towards them)
+    float stiffness; // length in which a root turns, of its radius
+    float wave;      // length in which chance changes, of the radius
+    float distance;  // how far other roots are felt, of the radius
+    float hold;      // how far from the host a root still takes to it, of its radius
+    float overhang;  // rad, from the horizontal: steeper undersides are let go
+    float sink;      // depth under the host's surface, of the radius, 0..0.9
+    float flatten;   // height of a section that lies on the host against its width, 0.3..1
 } ty_roots_growth_def;
 
-typedef struct ty_roots_branch_def
+// Branches that grow from one root into another.
+typedef struct ty_roots_link_def
 {
-    float spacing;  // m, mean, between the branches of a root
-    float angle;    // rad, from the parent's direction
-    float share[2]; // radius of a branch against its parent's
-    float exponent; // of the pipe model: r^n = sum of r_i^n
-    int levels;     // 0 = none, 1 = branches of main roots, ...
-} ty_roots_branch_def;
+    float spacing;  // m, mean along the parent; 0 = none
+    float reach;    // m, to the farthest partner
+    float slant;    // how much farther down the partner they end, of the way across
+    float share[2]; // radius against the thinner of both: from, to
+    float wander;   // how far they swing to the side, of the way across
+} ty_roots_link_def;
+
+typedef struct ty_roots_aerial_def
+{
+    int count;
+    float share[2]; // radius against the main roots'
+} ty_roots_aerial_def;
+
+typedef struct ty_roots_cover_def
+{
+    float spacing; // m, between the places that fine roots grow towards; 0 = none
+    float radius;  // m
+} ty_roots_cover_def;
 
 typedef struct ty_roots_recipe
 {
@@ -60,12 +76,16 @@ typedef struct ty_roots_recipe
     float variation; // of the radii, relative
     float tip;       // m, radius where a root ends
     float taper;     // m, length over which a radius falls to 1/e
-    float length;    // m, of a root at most
+    float length;    // m, of a main root at most
     ty_roots_growth_def growth;
-    ty_roots_branch_def branch;
-    float join;   // how far from each other roots begin to run together, of the thinner radius, 0..2
-    float bark;   // depth of the relief, of the radius, 0..0.5
-    float detail; // m, size of a cell of the surface
+    ty_roots_link_def first, second; // between main roots, and between first branches
+    ty_roots_aerial_def aerial;
+    ty_roots_cover_def cover;
+    float exponent; // of the pipe model: r^n = sum of r_i^n
+    float flare;    // how much thicker branches begin, of their radius
+    float join;     // how far from each other roots begin to run together, of the thinner radius, 0..2
+    float bark;     // depth of the relief, of the radius, 0..0.5
+    float detail;   // m, size of a cell of the surface
     ty_seed seed;
 } ty_roots_recipe;
 

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shrink-wrap: a curve is lifted far off the host, then drawn tight while the offset it must keep goes to nothing. It
+// goes round what lies between its ends instead of through it.
+#include "roots_growth.h"
+#include <string.h>
+#include <tsuya/base/noise.h>
+
+enum
+{
+    COARSE = 24,  // points while it is drawn tight
+    TIGHTEN = 36, // rounds of that
+    SMOOTH = 10,  // rounds at full resolution
+};
+
+#define MOST_WAY 2.6f // length against the chord
+#define LIFT 0.6f     // of the chord
+
+// Points at equal ways along the curve.
+static void resample(const ty_vec3* from, int count, ty_vec3* to, int wanted)
+{
+    float way[WRAP_MOST];
+    way[0] = 0.0f;
+    for (int i = 1; i < count; i++)
+        way[i] = way[i - 1] + ty_length(ty_sub(from[i], from[i - 1]));
+    for (int i = 0, j = 0; i < wanted; i++)
+    {
+        float at = way[count - 1] * (float)i / (float)(wanted - 1);
+        while (j + 2 < count && way[j + 1] < at)
+            j++;
+        float piece = way[j + 1] - way[j];
+        to[i] = ty_lerp3(from[j], from[j + 1], piece > 0.0f ? ty_clamp((at - way[j]) / piece, 0.0f, 1.0f) : 0.0f);
+    }
+    to[0] = from[0];
+    to[wanted - 1] = from[count - 1];
+}
+
+static void evened(ty_vec3* p, int count)
+{
+    ty_vec3 even[WRAP_MOST];
+    resample(p, count, even, count);
+    memcpy(p, even, (size_t)count * sizeof(ty_vec3));
+}
+
+static void smooth(ty_vec3* p, int count, float part)
+{
+    ty_vec3 last = p[0];
+    for (int i = 1; i + 1 < count; i++)
+    {
+        ty_vec3 own = p[i], middle = ty_mul(ty_add(last, p[i + 1]), 0.5f);
+        p[i] = ty_lerp3(own, middle, part);
+        last = own;
+    }
+}
+
+static float length_of(const ty_vec3* p, int count)
+{
+    float sum = 0.0f;
+    for (int i = 1; i < count; i++)
+        sum += ty_length(ty_sub(p[i], p[i - 1]));
+    return sum;
+}
+
+// The height at share t of the way: that of both roots at the ends, its own in between.
+static float height_at(const wrap_def* def, float t, float length)
+{
+    float own = (def->flat - def->sink) * def->r, a = growth_height(&def->a), b = growth_height(&def->b);
+    float from_a = ty_smoothstep(ty_clamp(t * length / (2.0f * def->a.r), 0.0f, 1.0f));
+    float from_b = ty_smoothstep(ty_clamp((1.0f - t) * length / (2.0f * def->b.r), 0.0f, 1.0f));
+    return ty_lerp(b, ty_lerp(a, own, from_a), from_b);
+}
+
+static void project(const growth* g, const wrap_def* def, wrap* w, float lift)
+{
+    float length = length_of(w->p, w->count);
+    for (int i = 1; i + 1 < w->count; i++)
+    {
+        float t = (float)i / (float)(w->count - 1), end = ty_min(1.0f, 4.0f * ty_min(t, 1.0f - t));
+        w->p[i] = roots_host_project(g->host, w->p[i], height_at(def, t, length) + lift * end, &w->n[i]);
+    }
+}
+
+static void begin(const wrap_def* def, wrap* w, float lift)
+{
+    ty_vec3 a = def->a.p, b = def->b.p;
+    w->count = COARSE;
+    for (int i = 0; i < COARSE; i++)
+    {
+        float t = (float)i / (COARSE - 1);
+        ty_vec3 n = ty_lerp3(def->a.n, def->b.n, t);
+        n = ty_length(n) > 1e-3f ? ty_normalize(n) : def->a.n;
+        w->p[i] = ty_mad(ty_lerp3(a, b, t), n, lift * 4.0f * t * (1.0f - t));
+    }
+}
+
+// Leaves along the root it comes from and arrives along the one it goes to: near the ends it is pulled that way.
+static void ends_bend(const wrap_def* def, wrap* w, float length)
+{
+    for (int i = 1; i + 1 < w->count; i++)
+    {
+        float t = (float)i / (float)(w->count - 1);
+        float reach_a = ty_min(5.0f * def->a.r, 0.3f * length), reach_b = ty_min(5.0f * def->b.r, 0.3f * length);
+        float x = t * length / reach_a, y = (1.0f - t) * length / reach_b;
+        w->p[i] = ty_mad(w->p[i], def->ta, 0.45f * reach_a * x * ty_exp(1.0f - x - 0.5f * x * x));
+        w->p[i] = ty_mad(w->p[i], def->tb, -0.45f * reach_b * y * ty_exp(1.0f - y - 0.5f * y * y));
+    }
+}
+
+// To the sides, by chance that is a function of the way.
+static void swing(const wrap_def* def, wrap* w, float length)
+{
+    ty_vec3 was[WRAP_MOST];
+    memcpy(was, w->p, (size_t)w->count * sizeof(ty_vec3));
+    for (int i = 1; i + 1 < w->count; i++)
+    {
+        float t = (float)i / (float)(w->count - 1), wide = 4.0f * t * (1.0f - t);
+        ty_vec3 along = ty_normalize(ty_sub(was[i + 1], was[i - 1])), side = ty_cross(w->n[i], along);
+        float x = 2.5f * t, noise = ty_value_noise(ty_vec3_make(x, 0.5f, 0.5f), (uint32_t)def->key);
+        noise += 0.4f * ty_value_noise(ty_vec3_make(2.6f * x, 0.5f, 0.5f), (uint32_t)def->key + 1u);
+        w->p[i] = ty_mad(w->p[i], side, def->wander * length * wide * noise);
+    }
+}
+
+// The cosine of the sharpest turn, and whether all lies where it should.
+static bool is_good(const growth* g, const wrap_def* def, const wrap* w)
+{
+    float turn = 1.0f;
+    for (int i = 1; i + 1 < w->count; i++)
+    {
+        ty_vec3 a = ty_normalize(ty_sub(w->p[i], w->p[i - 1])), b = ty_normalize(ty_sub(w->p[i + 1], w->p[i]));
+        turn = ty_min(turn, ty_dot(a, b));
+        float t = (float)i / (float)(w->count - 1), height = height_at(def, t, w->length);
+        if (fabsf(roots_host_value(g->host, w->p[i], NULL) - height) > 0.5f * def->r + 0.5f * g->host->field.step)
+            return false;
+    }
+    return turn > 0.5f; // 60 degrees
+}
+
+static void refine(const wrap_def* def, wrap* w)
+{
+    ty_vec3 fine[WRAP_MOST];
+    int wanted = (int)(length_of(w->p, w->count) / (0.5f * def->r)) + 2;
+    wanted = wanted < 12 ? 12 : wanted > WRAP_MOST ? WRAP_MOST : wanted;
+    resample(w->p, w->count, fine, wanted);
+    memcpy(w->p, fine, (size_t)wanted * sizeof(ty_vec3));
+    w->count = wanted;
+}
+
+bool roots_wrap(const growth* g, const wrap_def* def, wrap* w)
+{
+    float chord = ty_length(ty_sub(def->b.p, def->a.p)), lift = LIFT * chord;
+    begin(def, w, lift);
+    for (int i = 0; i <= TIGHTEN; i++)
+    {
+        float left = ty_sqr(1.0f - (float)i / TIGHTEN);
+        smooth(w->p, w->count, 0.7f);
+        smooth(w->p, w->count, 0.7f);
+        project(g, def, w, lift * left);
+        if (i % 4 == 3)
+            evened(w->p, w->count);
+    }
+    float length = length_of(w->p, w->count);
+    if (length > MOST_WAY * chord)
+        return false;
+    refine(def, w);
+    project(g, def, w, 0.0f);
+    swing(def, w, length);
+    ends_bend(def, w, length);
+    for (int i = 0; i < 4 * SMOOTH; i++)
+    {
+        smooth(w->p, w->count, 0.5f);
+        project(g, def, w, 0.0f);
+        if (i % 4 == 3)
+            evened(w->p, w->count);
+        w->length = length_of(w->p, w->count);
+        if (i >= SMOOTH && is_good(g, def, w))
+            break;
+    }
+    w->n[0] = def->a.n;
+    w->n[w->count - 1] = def->b.n;
+    return w->length <= MOST_WAY * chord && is_good(g, def, w);
+}
