@@ -11,6 +11,8 @@ enum
     NONE = -1,
 };
 
+#define BETTER 1e-3f // by which a cosine has to get smaller
+
 typedef struct mend
 {
     ty_mesh* mesh;
@@ -118,7 +120,7 @@ static bool flip(mend* m, int32_t c)
     int32_t o = m->across[c];
     ty_vec3 p = place(m, c), a = place(m, after(c)), b = place(m, before(c)), q = place(m, o);
     float now = ty_max(sharpest(p, a, b), sharpest(q, b, a)), then = ty_max(sharpest(p, a, q), sharpest(p, q, b));
-    if (then >= now - 1e-3f)
+    if (then >= now - BETTER)
         return false;
     ty_vec3 mean = ty_add(ty_normalize(normal(p, a, b)), ty_normalize(normal(q, b, a)));
     if (!agree(normal(p, a, q), mean) || !agree(normal(p, q, b), mean) || are_linked(m, c, vertex(m, o)))
@@ -193,8 +195,9 @@ static void triangle_drop(mend* m, int32_t c)
     m->corner[vertex(m, c)] = after(u);
 }
 
-// Draws the edge that faces corner c together, to one of its ends or its middle.
-static bool collapse(mend* m, int32_t c)
+// Draws the edge that faces corner c together, to one of its ends or its middle, if the worst of all triangles about it
+// gets better by that much.
+static bool collapse(mend* m, int32_t c, float better)
 {
     int32_t ca = after(c), cb = before(c), o = m->across[c], ring_a[MOST_RING], ring_b[MOST_RING];
     uint32_t a = vertex(m, ca), b = vertex(m, cb);
@@ -211,7 +214,7 @@ static bool collapse(mend* m, int32_t c)
         best = worst < then ? p : best;
         then = ty_min(then, worst);
     }
-    if (then >= now - 1e-3f)
+    if (then > now - better)
         return false;
     int32_t kept = NONE;
     for (int i = 0; i < na; i++)
@@ -249,7 +252,7 @@ static bool move(mend* m, int32_t c)
     for (float part = 1.0f; part > 0.2f; part *= 0.5f)
     {
         ty_vec3 q = ty_mad(p, shift, part);
-        if (ring_sharpest(m, ring, count, q, UINT32_MAX) < now - 1e-3f)
+        if (ring_sharpest(m, ring, count, q, UINT32_MAX) < now - BETTER)
         {
             m->mesh->positions[vertex(m, c)] = q;
             return true;
@@ -269,15 +272,15 @@ static bool triangle_mend(mend* m, int32_t t)
         longest = length[k] > length[longest % 3] ? 3 * t + k : longest;
         shortest = length[k] < length[shortest % 3] ? 3 * t + k : shortest;
     }
-    if (flip(m, longest) || collapse(m, shortest))
+    if (flip(m, longest) || collapse(m, shortest, BETTER))
         return true;
     for (int k = 0; k < 3; k++)
         if (move(m, 3 * t + k))
             return true;
     for (int k = 0; k < 3; k++)
-        if (flip(m, 3 * t + k) || collapse(m, 3 * t + k))
+        if (flip(m, 3 * t + k) || collapse(m, 3 * t + k, BETTER))
             return true;
-    return false;
+    return collapse(m, shortest, -1e-5f); // slivers side by side, as about a neck: at least they get fewer
 }
 
 // --- the table ---
