@@ -144,6 +144,10 @@ TY_CHECKED ty_status ty_develop_pixels(const ty_develop_def* def, float* pixels,
                                        ty_error* error);
 TY_CHECKED ty_status ty_develop(const ty_exr* exr, const ty_develop_def* def, const char* output, ty_error* error);
 
+// A small picture of roots on their host. roots: a mesh, or the pattern of frames, of which the last is shown. Logged.
+TY_CHECKED ty_status ty_roots_picture(const char* output, const char* roots, const char* host,
+                                      const ty_scene_options* options);
+
 void ty_signals_install(void);
 
 extern const ty_command ty_command_render, ty_command_develop, ty_command_merge, ty_command_check, ty_command_info,

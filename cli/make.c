@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `tsuya pack`, `tsuya filter` and `tsuya roots`: a recipe to a file, or to files by number.
+// `tsuya pack` and `tsuya filter`: a recipe to a file, or to files by number.
 #include "video.h"
 #include <limits.h>
 #include <stdio.h>
@@ -22,7 +22,6 @@ static const char *const filter_extensions[] = {"exr", "png", "gif", "mp4", "mov
 static const product products[] = {
     {"pack", "aggregate", ty_aggregate_endings, true, true},
     {"filter", "filter", filter_extensions, true, true},
-    {"roots", "roots", mesh_extensions, false, true},
 };
 
 static const product* find_product(const ty_command* command)
@@ -108,12 +107,6 @@ static ty_status run(const ty_arguments* arguments)
     return status == TY_OK ? printed : status;
 }
 
-#define OPTIONS(name, value, help)                                                                                     \
-    static const ty_option name[] = {                                                                                  \
-        {"output", 'o', value, help},                                                                                  \
-        TY_SCENE_OPTIONS,                                                                                              \
-    }
-
 static const ty_option pack_options[] = {
     {"output", 'o', "OUT.glb", "the aggregate to write; also .usda (USD), .ply (points) and .obj (one mesh)"},
     {"resume", 0, "FILE.glb", "go on from the state in a file that the same recipe gave with settle.state"},
@@ -128,7 +121,6 @@ static const ty_option filter_options[] = {
     {"resume", 0, "FILE.exr", "go on from that state: the same picture as without a stop, or a later one"},
     TY_SCENE_OPTIONS,
 };
-OPTIONS(roots_options, "OUT.ply", "the mesh to write");
 
 const ty_command ty_command_pack = {
     "pack",
@@ -151,17 +143,5 @@ const ty_command ty_command_filter = {
     2,
     filter_options,
     TY_PARAM_COUNT(filter_options),
-    run,
-};
-
-const ty_command ty_command_roots = {
-    "roots",
-    "RECIPE -o OUT.ply",
-    "make the mesh of roots on a host from its recipe",
-    "tsuya roots scenes/still_life/roots.yaml -o out/roots.ply --set seed=2",
-    1,
-    1,
-    roots_options,
-    TY_PARAM_COUNT(roots_options),
     run,
 };

@@ -253,6 +253,26 @@ static ty_status write_film(void* context, int frame, ty_aggregate* aggregate, t
     return ty_aggregate_export(path, aggregate, false, error);
 }
 
+static ty_status write_growth(void* context, int frame, ty_mesh* mesh, ty_error* error)
+{
+    const frame_writer* writer = context;
+    char path[TY_PATH_MAX];
+    sign(&mesh->recipe, &mesh->hash, ty_string_copy(writer->text), writer->key);
+    ty_path_frame(writer->pattern, frame, path);
+    return ty_mesh_export(path, mesh, error);
+}
+
+// What is made of roots besides their mesh.
+static ty_status write_beside(const ty_made* made, const ty_scene_options* options, ty_error* error)
+{
+    ty_status status = TY_OK;
+    if (made->curves && options)
+        status = ty_file_write(options->curves, made->curves, strlen(made->curves), error);
+    if (status == TY_OK && made->host && options)
+        status = ty_mesh_export(options->host, made->host, error);
+    return status;
+}
+
 // partial: an aggregate that was interrupted and holds its state is written as well. options: where else frames,
 // their state and a report go; NULL = nowhere.
 static ty_status write_made(const ty_recipe* recipe, const char* key, const char* output, const ty_color* color,
@@ -268,6 +288,11 @@ static ty_status write_made(const ty_recipe* recipe, const char* key, const char
     ty_made made = {.frames = {write_frame, writer.state ? write_state : NULL, &writer}, .state = state};
     if (recipe->generator->product == TY_PRODUCT_AGGREGATE && ty_path_is_sequence(output))
         made.film = (ty_aggregate_sink){write_film, &writer};
+    if (recipe->generator->product == TY_PRODUCT_MESH && ty_path_is_sequence(output))
+        made.growth = (ty_mesh_sink){write_growth, &writer};
+    made.wants_report = options && options->report;
+    made.wants_curves = options && options->curves;
+    made.wants_host = options && options->host;
     ty_status status = recipe->generator->make(recipe->def, workers, &made, error), written = TY_OK;
     ty_error write_error = {0};
     written = ty_frame_volume_end(&volume, status == TY_OK, &write_error);
@@ -283,10 +308,14 @@ static ty_status write_made(const ty_recipe* recipe, const char* key, const char
     if (made.mesh)
     {
         sign(&made.mesh->recipe, &made.mesh->hash, ty_string_copy(text), key);
-        written = ty_ply_write(output, made.mesh, &write_error);
+        written = ty_mesh_export(output, made.mesh, &write_error);
     }
+    if (status == TY_OK && written == TY_OK)
+        written = write_beside(&made, options, &write_error);
     ty_aggregate_destroy(made.aggregate);
     ty_mesh_destroy(made.mesh);
+    ty_mesh_destroy(made.host);
+    ty_free(made.curves);
     ty_free(text);
     if (status == TY_BAD_INPUT)
         ty_error_find_place(error, recipe->node);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Host, growth, surface, and what a mesh needs besides: one piece, exact positions, normals, uv, attributes.
-#include "roots.h"
+#include "roots_output.h"
 #include <string.h>
 #include <tsuya/base/log.h>
 
@@ -14,7 +14,7 @@ typedef struct dressing
     const ty_roots_recipe* recipe;
     ty_mesh* mesh;
     roots_sample* samples; // [vertex_count]
-    float *radius, *level, *join;
+    float *radius, *level, *join, *sink, *root, *along, *age;
 } dressing;
 
 // The field is an approximation: what lies near the host is held against the mesh itself.
@@ -76,6 +76,10 @@ static void vertices_dress(void* context, int64_t begin, int64_t end, int worker
         d->radius[v] = own.r;
         d->level[v] = (float)level_of(d->network->lines[sample.line].kind);
         d->join[v] = sample.join;
+        d->sink[v] = own.sink;
+        d->root[v] = (float)sample.line;
+        d->along[v] = own.s;
+        d->age[v] = own.birth;
     }
 }
 
@@ -176,12 +180,13 @@ static ty_status dress(dressing d, ty_workers* workers, ty_mesh** mesh, ty_error
     uint32_t count = (*mesh)->vertex_count;
     (*mesh)->uvs = TY_ALLOC(ty_vec2, count);
     d.samples = TY_ALLOC(roots_sample, count);
-    ty_mesh_add_attribute(*mesh, "radius", 1);
-    ty_mesh_add_attribute(*mesh, "level", 1);
-    ty_mesh_add_attribute(*mesh, "join", 1);
-    d.radius = (*mesh)->attributes[0].values;
-    d.level = (*mesh)->attributes[1].values;
-    d.join = (*mesh)->attributes[2].values;
+    d.radius = ty_mesh_add_attribute(*mesh, "radius", 1);
+    d.level = ty_mesh_add_attribute(*mesh, "level", 1);
+    d.join = ty_mesh_add_attribute(*mesh, "join", 1);
+    d.sink = ty_mesh_add_attribute(*mesh, "sink", 1);
+    d.root = ty_mesh_add_attribute(*mesh, "root", 1);
+    d.along = ty_mesh_add_attribute(*mesh, "along", 1);
+    d.age = ty_mesh_add_attribute(*mesh, "age", 1);
     ty_status status = TY_OK;
     if (!ty_parallel_for(workers, count, 1024, vertices_dress, &d))
         status = ty_error_set(error, TY_INTERRUPTED, "interrupted while roots were finished");
@@ -223,47 +228,93 @@ static ty_status recipe_check(const ty_roots_recipe* r, ty_error* error)
     return status == TY_OK ? share_check("aerial", r->aerial.share, error) : status;
 }
 
-static ty_status surface_make(const ty_roots_recipe* recipe, const roots_network* network, const roots_host* host,
-                              ty_workers* workers, ty_mesh** out, ty_error* error)
+ty_status roots_surface(const ty_roots_recipe* recipe, const roots_network* network, const roots_host* host,
+                        ty_workers* workers, roots_skin** skin, ty_mesh** out, ty_error* error)
 {
-    roots_skin* skin;
-    ty_status status = roots_skin_create(recipe, network, host, &skin, error);
+    *out = NULL;
+    ty_status status = roots_skin_create(recipe, network, host, skin, error);
     if (status != TY_OK)
         return status;
-    status = roots_skin_mesh(skin, workers, out, error);
+    status = roots_skin_mesh(*skin, workers, out, error);
     if (status == TY_OK)
     {
-        dressing d = {.skin = skin, .network = network, .host = host, .recipe = recipe};
+        dressing d = {.skin = *skin, .network = network, .host = host, .recipe = recipe};
         status = dress(d, workers, out, error);
+    }
+    if (status == TY_OK)
+    {
+        ty_mesh_compute_bounds(*out);
+        ty_mesh_compute_welds(*out);
+        return TY_OK;
+    }
+    roots_skin_destroy(*skin);
+    *skin = NULL;
+    return status;
+}
+
+// From the network on. The mesh is out's.
+static ty_status products_make(roots_result* result, ty_workers* workers, ty_made* out, ty_error* error)
+{
+    roots_skin* skin;
+    double start = ty_time_now();
+    ty_status status = roots_surface(result->recipe, result->network, result->host, workers, &skin, &out->mesh, error);
+    if (status != TY_OK)
+        return status;
+    result->surface_seconds = ty_time_now() - start;
+    result->skin = skin;
+    result->mesh = out->mesh;
+    ty_log(TY_LOG_INFO, "roots: %d roots of %d points grown in %.2f s, %u triangles in %.2f s",
+           result->network->line_count, result->network->point_count, result->grow_seconds, out->mesh->triangle_count,
+           result->surface_seconds);
+    if (out->wants_report)
+        out->report = roots_report(result, workers);
+    if (out->wants_curves)
+        out->curves = roots_curves_text(result->network);
+    if (out->wants_host)
+        out->host = ty_mesh_copy(result->host->mesh);
+    if (out->growth.put)
+    {
+        status = roots_growth_frames(result, &out->growth, workers, error);
+        ty_mesh_destroy(out->mesh);
+        out->mesh = NULL;
     }
     roots_skin_destroy(skin);
     return status;
 }
 
-ty_status ty_roots_make(const void* def, ty_workers* workers, ty_mesh** out, ty_error* error)
+ty_status ty_roots_make_all(const void* def, ty_workers* workers, ty_made* out, ty_error* error)
 {
     const ty_roots_recipe* recipe = def;
     roots_host host;
     roots_network network = {0};
-    double start = ty_time_now();
-    *out = NULL;
+    roots_result result = {.recipe = recipe, .host = &host, .network = &network};
     ty_status status = recipe_check(recipe, error);
+    if (status == TY_OK && recipe->curves)
+        status = roots_curves_read(recipe->curves, &network, error);
+    double begun = ty_time_now();
     if (status == TY_OK)
         status = roots_host_init(&recipe->host, &host, error);
     if (status != TY_OK)
-        return status;
-    status = roots_grow(recipe, &host, workers, &network, error);
-    double grown = ty_time_now();
-    if (status == TY_OK)
-        status = surface_make(recipe, &network, &host, workers, out, error);
-    if (status == TY_OK)
     {
-        ty_mesh_compute_bounds(*out);
-        ty_mesh_compute_welds(*out);
-        ty_log(TY_LOG_INFO, "roots: %d roots of %d points grown in %.1f s, %u triangles in %.1f s", network.line_count,
-               network.point_count, grown - start, (*out)->triangle_count, ty_time_now() - grown);
+        roots_network_term(&network);
+        return status;
     }
+    double ready = ty_time_now();
+    result.host_seconds = ready - begun;
+    if (!recipe->curves)
+        status = roots_grow(recipe, &host, workers, &network, error);
+    result.grow_seconds = ty_time_now() - ready;
+    if (status == TY_OK)
+        status = products_make(&result, workers, out, error);
     roots_network_term(&network);
     roots_host_term(&host);
+    return status;
+}
+
+ty_status ty_roots_make(const void* def, ty_workers* workers, ty_mesh** out, ty_error* error)
+{
+    ty_made made = {0};
+    ty_status status = ty_roots_make_all(def, workers, &made, error);
+    *out = made.mesh;
     return status;
 }

@@ -33,6 +33,7 @@ ty_roots_recipe ty_roots_recipe_default(void)
         .join = 0.8f,
         .bark = 0.08f,
         .detail = 0.6e-3f,
+        .grow = {.frames = 1},
         .seed = {7},
     };
     recipe.host.shape.radius = 0.04f;
@@ -155,6 +156,22 @@ static const ty_param cover_rows[] = {
 TABLE(cover_table, "roots.cover", "Fine roots over what is left of the host, by space colonisation.", cover_rows);
 #undef OWNER
 
+// --- growth by time ---
+
+static void set_grow_table(void* def)
+{
+    *(ty_roots_grow_def*)def = ty_roots_recipe_default().grow;
+}
+
+#define OWNER ty_roots_grow_def
+static const ty_param grow_rows[] = {
+    FIELD("frames", TY_PARAM_INT, "", 1, 100000, frames, "from the sprout to the still mesh, which is the last"),
+    FIELD("remesh", TY_PARAM_BOOL, "", 0, 0, remesh,
+          "a surface of its own for each frame; else one topology, which can be blurred by motion"),
+};
+TABLE(grow_table, "roots.grow", "The same roots as they come about.", grow_rows);
+#undef OWNER
+
 // --- the recipe ---
 
 static void set_recipe_table(void* def)
@@ -182,6 +199,9 @@ static const ty_param recipe_rows[] = {
     FIELD("join", TY_PARAM_FLOAT, "", 0, 2, join, "over which distance roots run together, of the thinner's radius"),
     FIELD("bark", TY_PARAM_FLOAT, "", 0, 0.4, bark, "depth of flutes and swellings, of the radius"),
     FIELD("detail", TY_PARAM_FLOAT, "mm", 0.02, 1e6, detail, "size of the surface's cells, at most the tip"),
+    FIELD("curves", TY_PARAM_PATH, "", 0, 0, curves,
+          "centre lines, perhaps edited, in place of those that would grow: what `tsuya roots --curves` wrote"),
+    GROUP("grow", &grow_table, grow, "frames of their growth, for an output with ####"),
     FIELD("seed", TY_PARAM_SEED, "", 0, 0, seed, "another seed, other roots"),
 };
 TABLE(recipe_table, "roots", "Roots that come down over a host, hold on to it, branch and grow together.", recipe_rows);
@@ -192,15 +212,10 @@ const ty_param_table* ty_roots_recipe_params(void)
     return &recipe_table;
 }
 
-static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_error* error)
-{
-    return ty_roots_make(def, workers, &out->mesh, error);
-}
-
 const ty_generator ty_roots_generator = {
     .kind = "roots",
-    .build_id = "roots 1",
+    .build_id = "roots 2",
     .product = TY_PRODUCT_MESH,
     .params = &recipe_table,
-    .make = make,
+    .make = ty_roots_make_all,
 };

@@ -32,6 +32,13 @@ typedef struct ty_aggregate_sink
     void* context;
 } ty_aggregate_sink;
 
+// The same for meshes that grow.
+typedef struct ty_mesh_sink
+{
+    ty_status (*put)(void* context, int frame, ty_mesh* mesh, ty_error* error);
+    void* context;
+} ty_mesh_sink;
+
 // One of these, by product.
 typedef struct ty_made
 {
@@ -39,7 +46,12 @@ typedef struct ty_made
     ty_mesh* mesh;           // the same
     ty_frame_sink frames;    // given by the caller
     ty_aggregate_sink film;  // given where the caller wants an aggregate as a film; then there is no aggregate
-    char* report;            // of loops: figures, a JSON object as text; the caller frees it with ty_free; else NULL
+    ty_mesh_sink growth;     // given where the caller wants a mesh's growth as frames; then there is no mesh
+    char* report; // of loops, and of roots where it is wanted: figures, a JSON object as text; the caller frees it with
+                  // ty_free; else NULL
+    char* curves; // of roots, where they are wanted: their centre lines, an ASCII PLY; the same
+    ty_mesh* host; // of roots, the same: what they hold on to, in its place
+    bool wants_report, wants_curves, wants_host;
     const ty_bytes*
         state; // given where the making of an aggregate or of frames goes on from one that is kept; else NULL
 } ty_made;

@@ -67,6 +67,13 @@ typedef struct ty_roots_cover_def
     float radius;  // m
 } ty_roots_cover_def;
 
+// The same roots as they come about, as frames.
+typedef struct ty_roots_grow_def
+{
+    int frames;  // 1..100000
+    bool remesh; // a surface of its own for each; else one topology, drawn in towards the centre lines
+} ty_roots_grow_def;
+
 typedef struct ty_roots_recipe
 {
     ty_roots_host_def host;
@@ -81,18 +88,24 @@ typedef struct ty_roots_recipe
     ty_roots_link_def first, second; // between main roots, and between first branches
     ty_roots_aerial_def aerial;
     ty_roots_cover_def cover;
-    float exponent; // of the pipe model: r^n = sum of r_i^n
-    float flare;    // how much thicker branches begin, of their radius
-    float join;     // how far from each other roots begin to run together, of the thinner radius, 0..2
-    float bark;     // depth of the relief, of the radius, 0..0.5
-    float detail;   // m, size of a cell of the surface
+    float exponent;     // of the pipe model: r^n = sum of r_i^n
+    float flare;        // how much thicker branches begin, of their radius
+    float join;         // how far from each other roots begin to run together, of the thinner radius, 0..2
+    float bark;         // depth of the relief, of the radius, 0..0.5
+    float detail;       // m, size of a cell of the surface
+    const char* curves; // path of centre lines in place of those that would grow, or NULL
+    ty_roots_grow_def grow;
     ty_seed seed;
 } ty_roots_recipe;
 
 ty_roots_recipe ty_roots_recipe_default(void); // eleven main roots on a ball of 4 cm radius
 const ty_param_table* ty_roots_recipe_params(void);
 // def is a ty_roots_recipe. The mesh is one closed surface, smooth, with uv (turns about the root from the side that is
-// away from the host; metres along it, from the trunk) and the attributes `radius` (m), `level` (0 = main root) and
-// `join` (0..1, how much roots run together there). On failure *out is NULL, else as ty_generator's make.
+// away from the host; metres along it, from the trunk) and the attributes `radius` (m), `level` (0 = main root), `join`
+// (0..1, how much roots run together there), `sink` (depth that it may reach under the host, of the radius), `root`
+// (its number), `along` (m from the trunk) and `age` (0..1, when the tip passed). On failure *out is NULL, else as
+// ty_generator's make.
 TY_CHECKED ty_status ty_roots_make(const void* def, ty_workers* workers, ty_mesh** out, ty_error* error);
+// The same, with what else is wanted in out.
+TY_CHECKED ty_status ty_roots_make_all(const void* def, ty_workers* workers, ty_made* out, ty_error* error);
 extern const ty_generator ty_roots_generator;

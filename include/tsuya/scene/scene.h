@@ -297,7 +297,9 @@ typedef struct ty_scene_options
     const char* state;   // where a run of frames keeps its state, at its end or when it is interrupted
     const char* picture; // a pattern for frames as pictures (.png) too
     const char* volume;  // a file for frames as the slices of a volume too, .raw or .nrrd
-    char** report;       // takes the figures of a loop, a JSON object; freed by the caller
+    char** report;       // takes the figures of a loop or of roots, a JSON object; freed by the caller
+    const char* curves;  // where the centre lines of roots go, .ply
+    const char* host;    // where a mesh of what roots hold on to goes, .ply, .obj or .glb
 } ty_scene_options;
 
 // path: a scene file, a folder with scene.yaml, or a glTF file, which gets light and a camera where it has none. On
@@ -340,8 +342,8 @@ static inline uint32_t ty_scene_material_at(const ty_scene_object* object, uint3
 }
 
 // Makes the asset of a recipe file and writes it to output, without the cache: an aggregate to a .glb, a mesh to a
-// .ply, frames to a pattern with ####. kind (NULL = any) is what the recipe has to be. element: above 0 = of an
-// aggregate's elements this one alone, as a .ply.
+// .ply, .obj or .glb (with #### its growth), frames to a pattern with ####. kind (NULL = any) is what the recipe has to
+// be. element: above 0 = of an aggregate's elements this one alone, as a .ply.
 TY_CHECKED ty_status ty_recipe_make(const char* recipe, const char* kind, const char* output, int element,
                                     const ty_scene_options* options, ty_error_list* errors);
 

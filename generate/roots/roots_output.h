@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// What becomes of grown roots besides their mesh: a file of centre lines, a report, frames of their growth.
+#pragma once
+#include "roots.h"
+
+// All that was made. Borrowed.
+typedef struct roots_result
+{
+    const ty_roots_recipe* recipe;
+    const roots_host* host;
+    const roots_network* network;
+    const roots_skin* skin;
+    const ty_mesh* mesh;
+    double host_seconds, grow_seconds, surface_seconds;
+} roots_result;
+
+// The surface of a network with all that stands at its vertices; *skin is the caller's too, on failure NULL as *out.
+TY_CHECKED ty_status roots_surface(const ty_roots_recipe* recipe, const roots_network* network, const roots_host* host,
+                                   ty_workers* workers, roots_skin** skin, ty_mesh** out, ty_error* error);
+
+// --- centre lines as a file ---
+
+// An ASCII PLY with the elements vertex, edge (for other programs) and line: docs/roots.md. Nine digits bring every
+// number back. The caller frees it with ty_free.
+char* roots_curves_text(const roots_network* network);
+// The same, perhaps edited. Counts of lines by kind are those of the file. On failure *out is zeroed and the error has
+// line and column.
+TY_CHECKED ty_status roots_curves_read(const char* path, roots_network* out, ty_error* error);
+
+// --- report ---
+
+// Figures of network and mesh as a JSON object; the caller frees it with ty_free.
+char* roots_report(const roots_result* result, ty_workers* workers);
+
+// --- growth by time ---
+
+// How thick a part is at t, 0..1, of its radius in the end. It never falls; 1 everywhere at t = 1.
+float roots_growth_at(float birth, float t);
+// Frames 1..count of the growing mesh, the last the same as the still one bit for bit.
+TY_CHECKED ty_status roots_growth_frames(const roots_result* result, const ty_mesh_sink* sink, ty_workers* workers,
+                                         ty_error* error);
