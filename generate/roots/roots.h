@@ -9,18 +9,28 @@
 
 // --- host ---
 
+typedef enum roots_mask
+{
+    ROOTS_AVOID,
+    ROOTS_ATTRACT,
+    ROOTS_MASKS,
+} roots_mask;
+
 typedef struct roots_host
 {
-    ty_mesh* mesh;
+    ty_mesh* mesh; // all objects as one
     ty_world* world;
     uint32_t prototype;
-    ty_voxels field; // signed distance
+    ty_voxels field;             // signed distance
+    uint8_t* masks[ROOTS_MASKS]; // at the nodes of the field, 255 = 1; NULL: nothing is painted
+    ty_voxels obstacles;         // signed distance; no values: there are none
     bool has_floor;
     float floor; // y
 } roots_host;
 
-// On failure *out is zeroed.
-TY_CHECKED ty_status roots_host_init(const ty_roots_host_def* def, roots_host* out, ty_error* error);
+// On failure *out is zeroed. The same bits for any workers, which may be NULL.
+TY_CHECKED ty_status roots_host_init(const ty_roots_recipe* recipe, ty_workers* workers, roots_host* out,
+                                     ty_error* error);
 void roots_host_term(roots_host* host);
 // Signed distance to host and floor from the field, with its gradient, which is not quite unit (NULL is allowed). Any
 // thread.
@@ -30,6 +40,22 @@ float roots_host_value(const roots_host* host, ty_vec3 p, ty_vec3* gradient);
 float roots_host_exact(const roots_host* host, ty_vec3 p, float reach, ty_vec3* normal);
 // p moved to a height over the host, by the field. *normal is unit, away from it.
 ty_vec3 roots_host_project(const roots_host* host, ty_vec3 p, float height, ty_vec3* normal);
+// What is painted on the host where it is nearest to p, 0..1, with its gradient, 1/m (NULL is allowed); 0 farther from
+// it than a few steps, or where nothing is. Any thread.
+float roots_host_mask(const roots_host* host, roots_mask which, ty_vec3 p, ty_vec3* gradient);
+// Signed distance to obstacles from a field like the host's, with its gradient; TY_FLOAT_MAX and 0: there are none.
+// Any thread.
+float roots_host_clear(const roots_host* host, ty_vec3 p, ty_vec3* gradient);
+
+typedef struct roots_start
+{
+    ty_vec3 p, n; // on the host's surface; unit, away from it
+} roots_start;
+
+// Where the recipe lets main roots start: its points, each once, then painted places as far apart as `most` in all
+// allow. The caller frees *out with ty_free. *count is 0, *out NULL when the recipe says neither.
+TY_CHECKED ty_status roots_host_starts(const roots_host* host, const ty_roots_recipe* recipe, int most,
+                                       roots_start** out, int* count, ty_error* error);
 
 // --- the network ---
 

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What roots grow on: a mesh asked for its closest point, and the plane it stands on.
-#include "roots.h"
-#include <tsuya/geometry/mesh_file.h>
+// What roots grow on: a mesh asked for its closest point, its field of distance, and the plane it stands on.
+#include "roots_host.h"
+#include <tsuya/base/log.h>
 
-static const ty_shape_kind shapes[] = {TY_SHAPE_SPHERE, TY_SHAPE_ELLIPSOID, TY_SHAPE_BOX, TY_SHAPE_CYLINDER,
-                                       TY_SHAPE_STONE};
-
-static ty_status mesh_make(const ty_roots_host_def* def, ty_mesh** out, ty_error* error)
+enum
 {
-    if (def->kind == TY_ROOTS_HOST_MESH && !def->mesh)
-        return ty_error_set(error, TY_BAD_INPUT, "host.mesh: the file is missing");
-    if (def->kind == TY_ROOTS_HOST_MESH)
-        return ty_mesh_read(def->mesh, out, error);
-    ty_shape_def shape = def->shape;
-    shape.kind = shapes[def->kind];
-    return ty_shape_create(&shape, out, error);
-}
+    MARGIN = 8, // steps of the field about the mesh
+};
 
 static ty_status world_make(roots_host* host, ty_error* error)
 {
@@ -26,24 +17,66 @@ static ty_status world_make(roots_host* host, ty_error* error)
     return status == TY_OK ? ty_world_commit(host->world, error) : status;
 }
 
-// A grid of that many steps along the host's longest side.
-static ty_status field_make(roots_host* host, int resolution, ty_error* error)
+static float longest_of(const ty_mesh* mesh)
 {
-    ty_vec3 size = ty_sub(host->mesh->bounds.high, host->mesh->bounds.low);
-    float longest = ty_max(size.x, ty_max(size.y, size.z)), step = longest / (float)resolution;
-    return ty_voxels_from_mesh(host->mesh, step, 8.0f * step, &host->field, error);
+    ty_vec3 size = ty_sub(mesh->bounds.high, mesh->bounds.low);
+    return ty_max(size.x, ty_max(size.y, size.z));
 }
 
-ty_status roots_host_init(const ty_roots_host_def* def, roots_host* out, ty_error* error)
+static ty_status field_make(const ty_mesh* mesh, int resolution, ty_workers* workers, ty_voxels* out, int32_t** nearest,
+                            ty_error* error)
 {
+    float step = longest_of(mesh) / (float)resolution;
+    return ty_voxels_around_mesh(mesh, step, MARGIN * step, workers, out, nearest, error);
+}
+
+// A root as thick as its host has nothing to hold on to.
+static ty_status radius_check(const ty_roots_recipe* recipe, const ty_mesh* mesh, ty_error* error)
+{
+    float most = longest_of(mesh);
+    if (recipe->radius <= most)
+        return TY_OK;
+    return ty_error_set(error, TY_BAD_INPUT, "radius: %g mm; at most %g mm, the host's longest side",
+                        (double)recipe->radius * 1e3, (double)most * 1e3);
+}
+
+static ty_status obstacles_make(const ty_roots_recipe* recipe, ty_workers* workers, roots_host* out, ty_error* error)
+{
+    ty_mesh* mesh;
+    if (recipe->obstacles.count == 0)
+        return TY_OK;
+    ty_status status = host_objects_make("obstacles", &recipe->obstacles, &mesh, error);
+    if (status != TY_OK)
+        return status;
+    status = field_make(mesh, recipe->host.resolution, workers, &out->obstacles, NULL, error);
+    ty_mesh_destroy(mesh);
+    return status;
+}
+
+ty_status roots_host_init(const ty_roots_recipe* recipe, ty_workers* workers, roots_host* out, ty_error* error)
+{
+    const ty_roots_host_def* def = &recipe->host;
+    int32_t* nearest = NULL;
+    double start = ty_time_now();
     *out = (roots_host){.has_floor = def->floor};
-    ty_status status = mesh_make(def, &out->mesh, error);
+    ty_status status = host_mesh_make(def, &out->mesh, error);
+    if (status == TY_OK)
+        status = radius_check(recipe, out->mesh, error);
     if (status == TY_OK)
         status = world_make(out, error);
     if (status == TY_OK)
-        status = field_make(out, 128, error);
+        status = field_make(out->mesh, def->resolution, workers, &out->field, &nearest, error);
     if (status == TY_OK)
-        out->floor = out->mesh->bounds.low.y;
+        status = host_masks_make(out, def, nearest, workers, error);
+    ty_free(nearest);
+    if (status == TY_OK)
+        status = obstacles_make(recipe, workers, out, error);
+    if (status == TY_OK)
+    {
+        out->floor = out->mesh->bounds.low.y + def->floor_height;
+        ty_log(TY_LOG_INFO, "roots: host of %u triangles, field of %d x %d x %d in %.1f s", out->mesh->triangle_count,
+               out->field.size[0], out->field.size[1], out->field.size[2], ty_time_now() - start);
+    }
     else
         roots_host_term(out);
     return status;
@@ -54,13 +87,15 @@ void roots_host_term(roots_host* host)
     ty_world_destroy(host->world);
     ty_mesh_destroy(host->mesh);
     ty_voxels_term(&host->field);
+    ty_voxels_term(&host->obstacles);
+    for (int i = 0; i < ROOTS_MASKS; i++)
+        ty_free(host->masks[i]);
     *host = (roots_host){0};
 }
 
 // --- distances ---
 
-// Trilinear; beyond the grid the way to it is added.
-static float field_value(const ty_voxels* f, ty_vec3 p, ty_vec3* gradient)
+float host_field_value(const ty_voxels* f, ty_vec3 p, ty_vec3* gradient)
 {
     ty_vec3 q = ty_mul(ty_sub(p, f->origin), 1.0f / f->step);
     const float at[3] = {q.x, q.y, q.z};
@@ -91,7 +126,7 @@ static float field_value(const ty_voxels* f, ty_vec3 p, ty_vec3* gradient)
 float roots_host_value(const roots_host* host, ty_vec3 p, ty_vec3* gradient)
 {
     ty_vec3 g;
-    float d = field_value(&host->field, p, &g), floor = p.y - host->floor;
+    float d = host_field_value(&host->field, p, &g), floor = p.y - host->floor;
     if (host->has_floor && floor < d)
     {
         d = floor;
@@ -102,25 +137,57 @@ float roots_host_value(const roots_host* host, ty_vec3 p, ty_vec3* gradient)
     return d;
 }
 
-// Facets and the two sides of an edge turn the exact direction by jumps; it is the field's sign that counts.
-float roots_host_exact(const roots_host* host, ty_vec3 p, float reach, ty_vec3* normal)
+float roots_host_clear(const roots_host* host, ty_vec3 p, ty_vec3* gradient)
+{
+    ty_vec3 g = {0.0f, 0.0f, 0.0f};
+    float d = host->obstacles.values ? host_field_value(&host->obstacles, p, &g) : TY_FLOAT_MAX;
+    if (gradient)
+        *gradient = g;
+    return d;
+}
+
+// Which side of the surface p is on, next to it, where the field's own sign may err: that of the field a little way on
+// from the surface through p. Of a sheet both sides are outside.
+static float side_of(const roots_host* host, const ty_closest* c, ty_vec3 away)
+{
+    ty_vec3 g, beyond = ty_mad(c->position, away, 1.5f * host->field.step);
+    return host_field_value(&host->field, beyond, &g) < 0.0f ? -1.0f : 1.0f;
+}
+
+static ty_vec3 facet_normal(const roots_host* host, uint32_t triangle)
+{
+    const uint32_t* c = host->mesh->triangles[triangle];
+    const ty_vec3* at = host->mesh->positions;
+    ty_vec3 n = ty_cross(ty_sub(at[c[1]], at[c[0]]), ty_sub(at[c[2]], at[c[0]]));
+    return ty_length_sqr(n) > 0.0f ? ty_normalize(n) : ty_vec3_make(0.0f, 1.0f, 0.0f);
+}
+
+// The distance of the mesh where the field says d.
+static float mesh_exact(const roots_host* host, ty_vec3 p, float d, ty_vec3* normal)
 {
     ty_closest c;
-    ty_vec3 g;
-    float d = field_value(&host->field, p, &g), floor = p.y - host->floor;
-    *normal = ty_normalize(g);
-    if (fabsf(d) < reach && ty_world_closest(host->world, host->prototype, p, reach + host->field.step, &c))
+    float step = host->field.step, reach = fabsf(d) + step; // wide searches are slow, and about lids there is no mesh
+    if (!ty_world_closest(host->world, host->prototype, p, reach, &c))
+        return d;
+    if (c.distance <= 1e-3f * step) // the way to the surface says nothing
     {
-        // near the surface the field may err in the sign: the side of the facet decides then
-        ty_vec3 away = ty_sub(p, c.position);
-        float side = d < 0.0f ? -1.0f : 1.0f;
-        if (c.distance > 1e-3f * host->field.step)
-        {
-            side = fabsf(d) > 0.5f * host->field.step ? side : ty_dot(away, *normal) < 0.0f ? -1.0f : 1.0f;
-            *normal = ty_mul(away, side / c.distance);
-        }
-        d = side * c.distance;
+        ty_vec3 n = ty_length_sqr(*normal) > 0.25f ? *normal : facet_normal(host, c.triangle);
+        *normal = ty_mul(n, side_of(host, &c, n));
+        return c.distance * side_of(host, &c, n);
     }
+    ty_vec3 away = ty_mul(ty_sub(p, c.position), 1.0f / c.distance);
+    float side = fabsf(d) > 0.75f * step ? (d < 0.0f ? -1.0f : 1.0f) : side_of(host, &c, away);
+    *normal = ty_mul(away, side);
+    return side * c.distance;
+}
+
+float roots_host_exact(const roots_host* host, ty_vec3 p, float reach, ty_vec3* normal)
+{
+    ty_vec3 g;
+    float d = host_field_value(&host->field, p, &g), floor = p.y - host->floor;
+    *normal = ty_length_sqr(g) > 0.0f ? ty_normalize(g) : ty_vec3_make(0.0f, 1.0f, 0.0f);
+    if (fabsf(d) < reach)
+        d = mesh_exact(host, p, d, normal);
     if (!host->has_floor || floor >= d)
         return d;
     *normal = ty_vec3_make(0.0f, 1.0f, 0.0f);

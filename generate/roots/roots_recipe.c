@@ -6,7 +6,7 @@
 ty_roots_recipe ty_roots_recipe_default(void)
 {
     ty_roots_recipe recipe = {
-        .host = {.kind = TY_ROOTS_HOST_SPHERE, .shape = ty_shape_def_default(), .floor = true},
+        .host = {.kind = TY_ROOTS_HOST_SPHERE, .shape = ty_shape_def_default(), .floor = true, .resolution = 256},
         .trunk = {0.03f, 0.012f, {0.0f, 0.0f, 0.0f}},
         .count = 11,
         .radius = 4.2e-3f,
@@ -23,7 +23,10 @@ ty_roots_recipe ty_roots_recipe_default(void)
                    .hold = 1.5f,
                    .overhang = ty_radians(35.0f),
                    .sink = 0.25f,
-                   .flatten = 0.75f},
+                   .flatten = 0.75f,
+                   .avoid = 1.0f,
+                   .attract = 1.0f,
+                   .clear = 1.5f},
         .first = {.spacing = 0.02f, .reach = 0.05f, .slant = 0.7f, .share = {0.4f, 0.75f}, .wander = 0.12f},
         .second = {.spacing = 0.03f, .reach = 0.04f, .slant = 0.3f, .share = {0.5f, 0.8f}, .wander = 0.1f},
         .aerial = {.count = 0, .share = {0.3f, 0.5f}},
@@ -40,9 +43,38 @@ ty_roots_recipe ty_roots_recipe_default(void)
     return recipe;
 }
 
-// --- host ---
+// --- objects ---
 
 static const char* const host_kinds[] = {"sphere", "ellipsoid", "box", "cylinder", "stone", "mesh", NULL};
+
+#define SHAPE_ROWS                                                                                                     \
+    {"shape", TY_PARAM_ENUM, "", 0, 0, host_kinds, NULL, offsetof(OWNER, kind), "what it is", false},                  \
+        FIELD("mesh", TY_PARAM_PATH, "", 0, 0, mesh, "a mesh, with shape mesh; it may be open, and hold instances"),   \
+        FIELD("radius", TY_PARAM_FLOAT, "m", 0, 1e4, shape.radius, "of sphere and cylinder"),                          \
+        FIELD("size", TY_PARAM_FLOAT3, "m", 0, 1e4, shape.size,                                                        \
+              "semi-axes of ellipsoid and stone, half extents of the box"),                                            \
+        FIELD("height", TY_PARAM_FLOAT, "m", 0, 1e4, shape.height, "of the cylinder"),                                 \
+        FIELD("rounding", TY_PARAM_FLOAT, "m", 0, 1e4, shape.rounding, "edges of box and cylinder"),                   \
+        FIELD("relief", TY_PARAM_FLOAT, "", 0, 0.5, shape.relief, "of the stone"),                                     \
+        FIELD("variant", TY_PARAM_INT, "", 0, 1000000, shape.variant, "which stone"),                                  \
+        FIELD("divisions", TY_PARAM_INT, "", 8, 4096, shape.divisions, "segments around; roots feel facets")
+
+static void set_object_table(void* def)
+{
+    *(ty_roots_object_def*)def = (ty_roots_object_def){.shape = ty_shape_def_default(), .scale = {1.0f, 1.0f, 1.0f}};
+}
+
+#define OWNER ty_roots_object_def
+static const ty_param object_rows[] = {
+    SHAPE_ROWS,
+    FIELD("translate", TY_PARAM_FLOAT3, "m", -1e5, 1e5, translate, "where it stands, after turning"),
+    FIELD("rotate", TY_PARAM_FLOAT3, "deg", -36000, 36000, rotate, "about x, then y, then z"),
+    FIELD("scale", TY_PARAM_FLOAT3, "", -1e5, 1e5, scale, "before turning; none is 0"),
+};
+TABLE(object_table, "roots.object", "Part of a host, or what roots keep clear of.", object_rows);
+#undef OWNER
+
+// --- host ---
 
 static void set_host_table(void* def)
 {
@@ -51,19 +83,32 @@ static void set_host_table(void* def)
 
 #define OWNER ty_roots_host_def
 static const ty_param host_rows[] = {
-    {"shape", TY_PARAM_ENUM, "", 0, 0, host_kinds, NULL, offsetof(OWNER, kind), "what roots grow on", false},
-    FIELD("mesh", TY_PARAM_PATH, "", 0, 0, mesh, "a mesh, with shape mesh; it may be open"),
-    FIELD("radius", TY_PARAM_FLOAT, "m", 0, 1e4, shape.radius, "of sphere and cylinder"),
-    FIELD("size", TY_PARAM_FLOAT3, "m", 0, 1e4, shape.size,
-          "semi-axes of ellipsoid and stone, half extents of the box"),
-    FIELD("height", TY_PARAM_FLOAT, "m", 0, 1e4, shape.height, "of the cylinder"),
-    FIELD("rounding", TY_PARAM_FLOAT, "m", 0, 1e4, shape.rounding, "edges of box and cylinder"),
-    FIELD("relief", TY_PARAM_FLOAT, "", 0, 0.5, shape.relief, "of the stone"),
-    FIELD("variant", TY_PARAM_INT, "", 0, 1000000, shape.variant, "which stone"),
-    FIELD("divisions", TY_PARAM_INT, "", 8, 4096, shape.divisions, "segments around; roots feel facets"),
-    FIELD("floor", TY_PARAM_BOOL, "", 0, 0, floor, "it stands on a plane at its lowest point; roots go on over it"),
+    SHAPE_ROWS,
+    LIST("objects", &object_table, objects, "several, in place of shape: they may overlap"),
+    FIELD("floor", TY_PARAM_BOOL, "", 0, 0, floor, "it stands on a plane; roots go on over it"),
+    FIELD("floor_height", TY_PARAM_FLOAT, "m", -1e4, 1e4, floor_height, "of the plane above the host's lowest point"),
+    FIELD("resolution", TY_PARAM_INT, "", 16, 448, resolution, "steps of its field of distance along the longest side"),
+    FIELD("avoid", TY_PARAM_STRING, "", 0, 0, avoid,
+          "attribute of its vertices, or a channel as color.g: roots keep from where it is 1"),
+    FIELD("attract", TY_PARAM_STRING, "", 0, 0, attract, "the same: roots are drawn to where it is 1"),
 };
 TABLE(host_table, "roots.host", "What the roots hold on to; it is no part of the result.", host_rows);
+#undef OWNER
+
+// --- start ---
+
+static void set_start_table(void* def)
+{
+    *(ty_roots_start_def*)def = (ty_roots_start_def){0};
+}
+
+#define OWNER ty_roots_start_def
+static const ty_param start_rows[] = {
+    FIELD("points", TY_PARAM_POINTS, "m", -1e5, 1e5, points, "places on the host, or near it"),
+    FIELD("attribute", TY_PARAM_STRING, "", 0, 0, attribute,
+          "of the host's vertices, or a channel as color.r: places apart from one another where it is above 0.5"),
+};
+TABLE(start_table, "roots.start", "Where main roots start, in place of the trunk.", start_rows);
 #undef OWNER
 
 // --- trunk ---
@@ -102,6 +147,9 @@ static const ty_param growth_rows[] = {
     FIELD("overhang", TY_PARAM_FLOAT, "deg", 0, 90, overhang, "undersides steeper than this are let go; 90 = none"),
     FIELD("sink", TY_PARAM_FLOAT, "", 0, 0.9, sink, "depth under the surface of the host, of the radius"),
     FIELD("flatten", TY_PARAM_FLOAT, "", 0.3, 1, flatten, "height of a section that lies on the host, of its width"),
+    FIELD("avoid", TY_PARAM_FLOAT, "", 0, 10, avoid, "weight of keeping from where host.avoid is painted"),
+    FIELD("attract", TY_PARAM_FLOAT, "", 0, 10, attract, "weight of going to where host.attract is painted"),
+    FIELD("clear", TY_PARAM_FLOAT, "", 1, 100, clear, "how far from obstacles roots keep, of the radius"),
 };
 TABLE(growth_table, "roots.growth", "How a tip finds its way.", growth_rows);
 #undef OWNER
@@ -182,6 +230,8 @@ static void set_recipe_table(void* def)
 #define OWNER ty_roots_recipe
 static const ty_param recipe_rows[] = {
     GROUP("host", &host_table, host, "what they hold on to"),
+    LIST("obstacles", &object_table, obstacles, "what they keep clear of but do not hold to"),
+    GROUP("start", &start_table, start, "where they start, in place of the trunk"),
     GROUP("trunk", &trunk_table, trunk, "where they come from"),
     FIELD("count", TY_PARAM_INT, "", 1, 500, count, "main roots"),
     FIELD("radius", TY_PARAM_FLOAT, "mm", 0.1, 1e6, radius, "of a main root at the trunk"),

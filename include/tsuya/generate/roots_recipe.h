@@ -15,14 +15,37 @@ typedef enum ty_roots_host_kind
     TY_ROOTS_HOST_MESH, // any mesh with normals, open ones too
 } ty_roots_host_kind;
 
-// The fields of shape that apply are those of the scene's shape of the same name, with the same defaults.
-typedef struct ty_roots_host_def
+// Part of a host, or an obstacle. The fields of shape that apply are those of the scene's shape of the same name, with
+// the same defaults.
+typedef struct ty_roots_object_def
 {
     int kind;           // ty_roots_host_kind
     const char* mesh;   // path
     ty_shape_def shape; // its kind is set from kind
-    bool floor;         // it stands on a plane, over which the roots go on
+    ty_vec3 translate;  // m
+    ty_vec3 rotate;     // rad, about x, then y, then z
+    ty_vec3 scale;      // none is 0
+} ty_roots_object_def;
+
+typedef struct ty_roots_host_def
+{
+    int kind;              // as of an object, the three
+    const char* mesh;      //
+    ty_shape_def shape;    //
+    ty_param_list objects; // of ty_roots_object_def: these in place of the above
+    bool floor;            // it stands on a plane, over which the roots go on
+    float floor_height;    // m, of the plane above the host's lowest point
+    int resolution;        // steps of the field along the longest side
+    const char* avoid;     // attribute of the meshes' vertices, or NULL: roots keep from where it is 1
+    const char* attract;   // the same: they are drawn to
 } ty_roots_host_def;
+
+// Where main roots start, in place of the trunk; on the host.
+typedef struct ty_roots_start_def
+{
+    ty_param_list points;  // of ty_vec3, m
+    const char* attribute; // of the host's vertices, or NULL: starts are where it is above 1/2
+} ty_roots_start_def;
 
 typedef struct ty_roots_trunk_def
 {
@@ -43,6 +66,9 @@ typedef struct ty_roots_growth_def
     float overhang;  // rad, from the horizontal: steeper undersides are let go
     float sink;      // depth under the host's surface, of the radius, 0..0.9
     float flatten;   // height of a section that lies on the host against its width, 0.3..1
+    float avoid;     // weights of what is painted on the host: away from it,
+    float attract;   // towards it
+    float clear;     // how far from obstacles roots keep, of the radius
 } ty_roots_growth_def;
 
 // Branches that grow from one root into another.
@@ -77,6 +103,8 @@ typedef struct ty_roots_grow_def
 typedef struct ty_roots_recipe
 {
     ty_roots_host_def host;
+    ty_param_list obstacles; // of ty_roots_object_def: what roots keep clear of
+    ty_roots_start_def start;
     ty_roots_trunk_def trunk;
     int count;       // main roots, 1..500
     float radius;    // m, of a main root where it leaves the trunk

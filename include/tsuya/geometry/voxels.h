@@ -2,6 +2,7 @@
 // Solids as signed distances on a regular grid: made of a closed mesh, joined with balls and cut by them, swollen,
 // smoothed, and made a mesh again at any other resolution.
 #pragma once
+#include <tsuya/base/workers.h>
 #include <tsuya/geometry/mesh.h>
 
 // Owned by who made it. values[(k * size[1] + j) * size[0] + i] is the distance at origin + step * (i, j, k), metres,
@@ -31,6 +32,13 @@ typedef struct ty_voxel_sample
 // for an empty mesh or more than 2^27 nodes, TY_NO_MEMORY; *out is zeroed then. Any thread.
 TY_CHECKED ty_status ty_voxels_from_mesh(const ty_mesh* mesh, float step, float margin, ty_voxels* out,
                                          ty_error* error);
+// The same about any mesh with welds: within a twentieth of a step next to the surface, a tenth up to four steps, half
+// a step beyond. Closed parts hold a space in where rows of nodes wind about them at all, turned inside out or not.
+// Open ones do where their generalised winding number (Barill et al. 2018) is above one half: a lid closes their
+// opening. Sheets, about which it is nowhere clearly more, have two outsides. nearest, where it is not NULL: the
+// triangle nearest to each node, which the caller frees with ty_free. The same bits for any number of workers.
+TY_CHECKED ty_status ty_voxels_around_mesh(const ty_mesh* mesh, float step, float margin, ty_workers* workers,
+                                           ty_voxels* out, int32_t** nearest, ty_error* error);
 void ty_voxels_term(ty_voxels* voxels); // a zeroed one is allowed
 
 // Union with a ball, and what a ball leaves of the solid. reach (m): how far from its surface nodes are looked at;

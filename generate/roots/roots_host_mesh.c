@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mesh of a host: shapes and files, moved and put together, with what is painted on them.
+#include "roots_host.h"
+#include <stdio.h>
+#include <string.h>
+#include <tsuya/geometry/mesh_file.h>
+
+static const ty_shape_kind shapes[] = {TY_SHAPE_SPHERE, TY_SHAPE_ELLIPSOID, TY_SHAPE_BOX, TY_SHAPE_CYLINDER,
+                                       TY_SHAPE_STONE};
+
+static ty_status shape_make(const char* where, int kind, const char* mesh, const ty_shape_def* def, ty_mesh** out,
+                            ty_error* error)
+{
+    if (kind == TY_ROOTS_HOST_MESH && !mesh)
+        return ty_error_set(error, TY_BAD_INPUT, "%s.mesh: the file is missing", where);
+    if (kind == TY_ROOTS_HOST_MESH)
+        return ty_mesh_read(mesh, out, error);
+    ty_shape_def shape = *def;
+    shape.kind = shapes[kind];
+    return ty_shape_create(&shape, out, error);
+}
+
+static ty_status object_make(const char* where, const ty_roots_object_def* def, ty_mesh** out, ty_error* error)
+{
+    if (def->scale.x == 0.0f || def->scale.y == 0.0f || def->scale.z == 0.0f)
+        return ty_error_set(error, TY_BAD_INPUT, "%s.scale: [%g, %g, %g]; no component is 0", where,
+                            (double)def->scale.x, (double)def->scale.y, (double)def->scale.z);
+    ty_status status = shape_make(where, def->kind, def->mesh, &def->shape, out, error);
+    if (status == TY_OK)
+    {
+        ty_affine m = ty_affine_from_trs(def->translate, ty_quat_euler(def->rotate), def->scale);
+        ty_mesh_transform(*out, &m);
+    }
+    return status;
+}
+
+// --- merging ---
+
+static ty_status attributes_copy(ty_mesh* out, const ty_mesh* part, uint32_t vertex, ty_error* error)
+{
+    for (int a = 0; a < part->attribute_count; a++)
+    {
+        const ty_mesh_attribute* from = &part->attributes[a];
+        const ty_mesh_attribute* found = ty_mesh_find_attribute(out, from->name);
+        if (found && found->components != from->components)
+            return ty_error_set(error, TY_BAD_INPUT, "host: the objects' attributes '%s' have %d and %d numbers",
+                                from->name, found->components, from->components);
+        float* values = ty_mesh_add_attribute(out, from->name, from->components);
+        size_t stride = (size_t)from->components;
+        memcpy(values + vertex * stride, from->values, part->vertex_count * stride * sizeof(float));
+    }
+    return TY_OK;
+}
+
+static ty_status merge(ty_mesh* const* parts, int count, ty_mesh** out, ty_error* error)
+{
+    uint64_t vertices = 0, triangles = 0;
+    for (int i = 0; i < count; i++)
+    {
+        vertices += parts[i]->vertex_count;
+        triangles += parts[i]->triangle_count;
+    }
+    if (vertices > INT32_MAX || triangles > INT32_MAX)
+        return ty_error_set(error, TY_BAD_INPUT, "host: %llu triangles; at most %d", (unsigned long long)triangles,
+                            INT32_MAX);
+    ty_mesh* mesh = *out = ty_mesh_create((uint32_t)vertices, (uint32_t)triangles);
+    if (!mesh)
+        return ty_error_set(error, TY_NO_MEMORY, "no memory for a host of %llu triangles",
+                            (unsigned long long)triangles);
+    uint32_t vertex = 0, triangle = 0;
+    ty_status status = TY_OK;
+    for (int i = 0; i < count && status == TY_OK; i++)
+    {
+        const ty_mesh* part = parts[i];
+        memcpy(mesh->positions + vertex, part->positions, part->vertex_count * sizeof(ty_vec3));
+        memcpy(mesh->normals + vertex, part->normals, part->vertex_count * sizeof(ty_vec3));
+        for (uint32_t t = 0; t < part->triangle_count; t++)
+            for (int k = 0; k < 3; k++)
+                mesh->triangles[triangle + t][k] = vertex + part->triangles[t][k];
+        status = attributes_copy(mesh, part, vertex, error);
+        vertex += part->vertex_count;
+        triangle += part->triangle_count;
+    }
+    return status;
+}
+
+// What moves and scales bring may be too large for numbers, or nothing.
+static ty_status mesh_finish(const char* where, ty_status status, ty_mesh** mesh, ty_error* error)
+{
+    if (status == TY_OK)
+        status = ty_mesh_validate(*mesh, where, error);
+    if (status == TY_OK)
+    {
+        ty_mesh_compute_welds(*mesh);
+        ty_mesh_compute_bounds(*mesh);
+        return TY_OK;
+    }
+    ty_mesh_destroy(*mesh);
+    *mesh = NULL;
+    return status;
+}
+
+ty_status host_objects_make(const char* where, const ty_param_list* objects, ty_mesh** out, ty_error* error)
+{
+    ty_mesh** parts = TY_ALLOC(ty_mesh*, objects->count);
+    ty_status status = TY_OK;
+    *out = NULL;
+    for (int i = 0; i < objects->count && status == TY_OK; i++)
+    {
+        char name[48];
+        snprintf(name, sizeof name, "%s[%d]", where, i);
+        status = object_make(name, (const ty_roots_object_def*)objects->items + i, &parts[i], error);
+    }
+    if (status == TY_OK)
+        status = merge(parts, objects->count, out, error);
+    for (int i = 0; i < objects->count; i++)
+        ty_mesh_destroy(parts[i]);
+    ty_free(parts);
+    return mesh_finish(where, status, out, error);
+}
+
+ty_status host_mesh_make(const ty_roots_host_def* def, ty_mesh** out, ty_error* error)
+{
+    if (def->objects.count > 0)
+        return host_objects_make("host.objects", &def->objects, out, error);
+    *out = NULL;
+    return mesh_finish("host", shape_make("host", def->kind, def->mesh, &def->shape, out, error), out, error);
+}
