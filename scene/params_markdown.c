@@ -79,7 +79,7 @@ static const char FILES[] =
     "| `frame` | a number | the frame that a plain `render` makes: `timeline.start` if not given |\n"
     "| `assets` | name: `asset.mesh`, `asset.shape`, `asset.texture`, `asset.frames`, `asset.fill`, `asset.loop`, "
     "`asset.filter`, `asset.aggregate` or `asset.gltf` | what there is |\n"
-    "| `materials` | name: { model: surface, cdrf or walk, ... } | what it is made of |\n"
+    "| `materials` | name: { model: surface, cdrf, walk or bark, ... } | what it is made of |\n"
     "| `objects`, `lights` | lists of `object`, `light` | what is seen |\n\n"
     "A recipe has `tsuya: 1`, `kind:` (the name of its table: `aggregate`, `fill`, `filter`, `loop`, `roots`), `vars` "
     "and the keys of "

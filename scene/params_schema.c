@@ -167,9 +167,9 @@ static void add_type(ty_text* out, const ty_param* row)
 // Whether values of a table may change with time.
 static bool is_keyed(const ty_param_table* table)
 {
-    const ty_param_table* const tables[] = {ty_camera_params(),   ty_turntable_params(), ty_light_params(),
-                                            ty_object_params(),   ty_surface_params(),   ty_cdrf_params(),
-                                            ty_moisture_params(), ty_soak_params(),      ty_walk_params()};
+    const ty_param_table* const tables[] = {
+        ty_camera_params(), ty_turntable_params(), ty_light_params(), ty_object_params(), ty_surface_params(),
+        ty_cdrf_params(),   ty_moisture_params(),  ty_soak_params(),  ty_walk_params(),   ty_bark_params()};
     for (int i = 0; i < TY_PARAM_COUNT(tables); ++i)
         if (tables[i] == table)
             return true;
@@ -274,6 +274,8 @@ static void add_definitions(ty_text* out)
             add_table(out, tables[i], "model", "cdrf");
         else if (tables[i] == ty_walk_params())
             add_table(out, tables[i], "model", "walk");
+        else if (tables[i] == ty_bark_params())
+            add_table(out, tables[i], "model", "bark");
         else
             add_table(out, tables[i], kind ? "kind" : NULL, kind);
         ty_text_add(out, i + 1 < count ? ",\n" : "\n");
@@ -304,7 +306,7 @@ char* ty_params_schema(void)
                    ty_shape_params()->name);
     ty_text_add(&out, "    \"materials\": {\"type\": \"object\", \"additionalProperties\": {\"anyOf\": [{\"$ref\": "
                       "\"#/$defs/material.surface\"}, {\"$ref\": \"#/$defs/material.cdrf\"}, {\"$ref\": "
-                      "\"#/$defs/material.walk\"}]}},\n"
+                      "\"#/$defs/material.walk\"}, {\"$ref\": \"#/$defs/material.bark\"}]}},\n"
                       "    \"objects\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/object\"}},\n"
                       "    \"lights\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/light\"}}\n  },\n"
                       "  \"$defs\": {\n");

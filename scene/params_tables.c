@@ -49,6 +49,7 @@ const ty_param_table* const* ty_scene_tables(int* count)
     add(&list, ty_surface_params());
     add(&list, ty_cdrf_params());
     add(&list, ty_walk_params());
+    add(&list, ty_bark_params());
     int generators = 0;
     const ty_generator* const* all = ty_generator_list(&generators);
     for (int i = 0; i < generators; ++i)

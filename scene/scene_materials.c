@@ -9,6 +9,7 @@ typedef enum model
     SURFACE,
     CDRF,
     WALK,
+    BARK,
 } model;
 
 enum
@@ -85,9 +86,11 @@ static ty_status create(model kind, const void* def, ty_material** out, ty_error
     case CDRF:
         return ty_material_create_cdrf(def, out, error);
     case WALK:
+        return ty_material_create_walk(def, out, error);
+    case BARK:
         break;
     }
-    return ty_material_create_walk(def, out, error);
+    return ty_material_create_bark(def, out, error);
 }
 
 // One of three ways to say it, and one place for the degree of cooking.
@@ -135,19 +138,22 @@ static int skip_names_of(const ty_param_table* table, const char** skip, int cou
 
 static void read_model(ty_loader* loader, ty_node* node, model kind, int index)
 {
-    const ty_param_table* const tables[] = {
-        [SURFACE] = ty_surface_params(), [CDRF] = ty_cdrf_params(), [WALK] = ty_walk_params()};
+    const ty_param_table* const tables[] = {[SURFACE] = ty_surface_params(),
+                                            [CDRF] = ty_cdrf_params(),
+                                            [WALK] = ty_walk_params(),
+                                            [BARK] = ty_bark_params()};
     union
     {
         ty_surface_def surface;
         ty_cdrf_def cdrf;
         ty_walk_def walk;
+        ty_bark_def bark;
     } def;
     const char* skip[MOST_SKIPPED + 1] = {"model"};
     skip[skip_names_of(tables[kind], skip, 1)] = NULL;
     ty_error error;
     if (ty_params_read(&loader->reader, node, tables[kind], &def, skip) &&
-        (kind == SURFACE ||
+        (kind == SURFACE || kind == BARK ||
          read_moisture_source(loader, node, kind == CDRF ? &def.cdrf.moisture : &def.walk.common.moisture)) &&
         !loader->checks_keys && create(kind, &def, &loader->scene->materials[index], &error) != TY_OK)
         report_impossible(loader, node, loader->scene->material_names[index], &error);
@@ -155,7 +161,8 @@ static void read_model(ty_loader* loader, ty_node* node, model kind, int index)
 
 static void read_material(ty_loader* loader, ty_node* node, int index)
 {
-    static const char* const models[] = {[SURFACE] = "surface", [CDRF] = "cdrf", [WALK] = "walk", NULL};
+    static const char* const models[] = {
+        [SURFACE] = "surface", [CDRF] = "cdrf", [WALK] = "walk", [BARK] = "bark", NULL};
     const ty_param row = {.name = "model", .type = TY_PARAM_ENUM, .unit = "", .choices = models};
     char described[80];
     const char* name = loader->scene->material_names[index];
@@ -172,7 +179,7 @@ static void read_material(ty_loader* loader, ty_node* node, int index)
     int chosen = 0;
     if (!said)
         ty_report(loader->errors, node->place, TY_BAD_INPUT,
-                  "material '%.100s': missing key 'model', one of: surface, cdrf, walk", name);
+                  "material '%.100s': missing key 'model', one of: surface, cdrf, walk, bark", name);
     else if (ty_param_read(&loader->reader, said, &row, &chosen))
         read_model(loader, node, (model)chosen, index);
 }

@@ -31,6 +31,8 @@ struct ty_material
     ty_surface_def surface;
     ty_cdrf_def cdrf; // of `walk`: what both have in common
     ty_walk_def walk;
+    ty_bark_def bark; // of a `surface` that is bark: says its colour, roughness and relief
+    bool is_bark;
     float inner_reflection;    // mean, of diffuse light within `walk` with a dielectric boundary; 0 of a diffuse one
     ty_albedo_table* specular; // E of the dielectric specular of `surface`, or NULL where it has none
     ty_albedo_table* coat;     // E of the coat of `surface`, or of the specular reflection of `cdrf`

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shading frame where maps bend it or the texture's direction turns it.
+#include "bark.h"
 #include "material_private.h"
 
 // How the position moves with uv; where there is no uv, by any two directions, and uv stands still.
@@ -96,6 +97,11 @@ void ty_shading_frame_bend(const ty_material* material, const ty_shading_context
     ty_vec3 n = b->point.ns;
     if (map->texture_index >= 0 || map->attribute_index >= 0)
         n = mapped_normal(map, strength, context, &b->point, &t, n);
+    if (material->is_bark)
+    {
+        ty_frame frame = ty_frame_from_normal(n);
+        n = ty_bark_normal(&material->bark, context, &b->point, &frame);
+    }
     if (bump->texture_index >= 0)
         n = bumped_normal(bump, context, &b->point, &t, n);
     b->frame = ty_frame_from_normal(ty_facing_normal(b->entering ? n : ty_neg(n), b->wo));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `surface`: a coat over a mixture of metal, diffuse dielectric and transmitting dielectric. Preparation at a point.
+#include "bark.h"
 #include "diffuse.h"
 #include "fresnel.h"
 #include "material_private.h"
@@ -315,14 +316,19 @@ void ty_surface_prepare(const ty_material* material, const ty_shading_context* c
     const ty_surface_point* p = &b->point;
     b->kind = TY_BSDF_SURFACE;
     b->thin = s->thin_walled;
-    b->color = ty_surface_base_color(s, context, p);
+    ty_bark_look look;
+    if (material->is_bark)
+        look = ty_bark_look_at(&material->bark, context, p);
+    else
+        look = (ty_bark_look){ty_surface_base_color(s, context, p), ty_unit_input(&s->specular_roughness, context, p)};
+    b->color = look.color;
     b->specular_tint = ty_clamp_color(ty_input_color(&s->specular_color, context, p));
     b->metalness = ty_unit_input(&s->base_metalness, context, p);
     b->specular_weight = ty_unit_input(&s->specular_weight, context, p);
     b->metal = ty_rgb_grey(b->metalness * b->specular_weight);
     if (b->metalness > 0.0f)
         b->metal_dip = ty_metal_dip(b->color, b->specular_tint);
-    float roughness = ty_unit_input(&s->specular_roughness, context, p), mu = ty_dot(b->wo, b->frame.n);
+    float roughness = look.roughness, mu = ty_dot(b->wo, b->frame.n);
     prepare_transmission(s, context, b);
     ty_surface_prepare_layers(material, context, b);
     if (material->emissive && b->entering)

@@ -157,19 +157,39 @@ typedef struct ty_walk_def
     ty_input subsurface_radius_scale; // of the channels
 } ty_walk_def;
 
+// Layers of noise on a root or stem whose uv are turns about it and metres along it.
+typedef struct ty_bark_def
+{
+    ty_input young_color, old_color, crease_color;
+    float size;                         // m, of a patch; all else is in proportion
+    float depth;                        // m, of the relief
+    float wrinkles, lenticels, creases; // 0..1
+    ty_input age;                       // 0..1
+    ty_input radius;                    // m, of the root
+    ty_input join;                      // 0..1: 1 = patterns lie in space instead of along the root
+    ty_input lichen;                    // 0..1, cover
+    ty_input lichen_color;              //
+    ty_input moisture;                  // 0..1: 0 dry, 1 dripping
+    ty_input specular_roughness;        // 0..1, dry
+    ty_input specular_weight;           // 0..1
+} ty_bark_def;
+
 extern const char* const ty_walk_preset_names[]; // NULL-terminated; the first is "none"
 
 ty_surface_def ty_surface_def_default(void);
 ty_cdrf_def ty_cdrf_def_default(void);
 ty_walk_def ty_walk_def_default(void);
+ty_bark_def ty_bark_def_default(void);
 const ty_param_table* ty_surface_params(void); // "material.surface"
 const ty_param_table* ty_cdrf_params(void);    // "material.cdrf"
 const ty_param_table* ty_walk_params(void);    // "material.walk"
+const ty_param_table* ty_bark_params(void);    // "material.bark"
 
 // Copies def (strings excepted: indices must be resolved). Impossible combinations are TY_BAD_INPUT naming the field.
 TY_CHECKED ty_status ty_material_create_surface(const ty_surface_def* def, ty_material** out, ty_error* error);
 TY_CHECKED ty_status ty_material_create_cdrf(const ty_cdrf_def* def, ty_material** out, ty_error* error);
 TY_CHECKED ty_status ty_material_create_walk(const ty_walk_def* def, ty_material** out, ty_error* error);
+TY_CHECKED ty_status ty_material_create_bark(const ty_bark_def* def, ty_material** out, ty_error* error);
 void ty_material_destroy(ty_material* material); // NULL is allowed
 
 bool ty_material_is_subsurface(const ty_material* material); // cdrf, walk: closed surfaces of it are one-sided
