@@ -129,9 +129,12 @@ typedef struct roots_skin roots_skin; // opaque: blocks of a grid with the segme
 TY_CHECKED ty_status roots_skin_create(const ty_roots_recipe* recipe, const roots_network* network,
                                        const roots_host* host, roots_skin** out, ty_error* error);
 void roots_skin_destroy(roots_skin* skin); // NULL is allowed
-// Any thread. Far from all roots the distance is TY_FLOAT_MAX and segment -1.
+// Any thread. The distance of roots without the relief of their bark. Far from all roots it is TY_FLOAT_MAX and segment
+// -1.
 roots_sample roots_skin_at(const roots_skin* skin, ty_vec3 p);
-ty_vec3 roots_skin_normal(const roots_skin* skin, ty_vec3 p);
+// The same with the direction of its gradient, unit (up where there is none), and the height of the bark over it, m, 0
+// far from all roots (NULL: not asked for).
+roots_sample roots_skin_look(const roots_skin* skin, ty_vec3 p, ty_vec3* normal, float* relief);
 // What the line holds there; segment is not -1.
 roots_point roots_skin_point(const roots_skin* skin, roots_sample sample);
 // uv of p on the surface of one segment's root, about the given place.

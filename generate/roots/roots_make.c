@@ -31,6 +31,36 @@ static bool depth_keep(const roots_host* host, const roots_point* own, ty_vec3* 
     return true;
 }
 
+// What stands out from the surface of roots, bark, turns normals by its slope: the mean of the gradients of what is
+// linear on the triangles about a vertex.
+static void normals_tilt(ty_mesh* mesh, const roots_sample* samples)
+{
+    ty_vec3* slope = TY_ALLOC(ty_vec3, mesh->vertex_count);
+    float* area = TY_ALLOC(float, mesh->vertex_count);
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+    {
+        const uint32_t* c = mesh->triangles[t];
+        ty_vec3 a = mesh->positions[c[0]], b = mesh->positions[c[1]], d = mesh->positions[c[2]];
+        ty_vec3 n = ty_cross(ty_sub(b, a), ty_sub(d, a)), sum;
+        float twice = ty_length(n);
+        if (twice == 0.0f)
+            continue;
+        sum = ty_mul(ty_sub(d, b), samples[c[0]].distance);
+        sum = ty_mad(sum, ty_sub(a, d), samples[c[1]].distance);
+        sum = ty_mul(ty_cross(n, ty_mad(sum, ty_sub(b, a), samples[c[2]].distance)), 1.0f / twice);
+        for (int k = 0; k < 3; k++)
+        {
+            slope[c[k]] = ty_add(slope[c[k]], sum);
+            area[c[k]] += twice;
+        }
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+        if (area[v] > 0.0f && ty_length_sqr(mesh->normals[v]) > 0.0f)
+            mesh->normals[v] = ty_normalize(ty_mad(mesh->normals[v], slope[v], -1.0f / area[v]));
+    ty_free(slope);
+    ty_free(area);
+}
+
 // Where the field has said nothing, normals are those of the triangles.
 static void normals_fill(ty_mesh* mesh)
 {
@@ -64,11 +94,8 @@ static void vertices_dress(void* context, int64_t begin, int64_t end, int worker
     for (int64_t v = begin; v < end; v++)
     {
         ty_vec3* p = &d->mesh->positions[v];
-        ty_vec3 n = roots_skin_normal(d->skin, *p);
-        roots_sample sample = roots_skin_at(d->skin, *p);
-        // Interpolation along an edge leaves a part of a cell: one step of Newton's, held within the cell.
-        float most = 0.2f * d->recipe->detail;
-        *p = ty_mad(*p, n, -ty_clamp(sample.distance, -most, most));
+        ty_vec3 n;
+        roots_sample sample = roots_skin_look(d->skin, *p, &n, NULL);
         roots_point own = roots_skin_point(d->skin, sample);
         d->mesh->normals[v] = depth_keep(d->host, &own, p) ? (ty_vec3){0.0f, 0.0f, 0.0f} : n;
         d->mesh->uvs[v] = roots_skin_uv(d->skin, *p, sample);
@@ -191,7 +218,10 @@ static ty_status dress(dressing d, ty_workers* workers, ty_mesh** mesh, ty_error
     if (!ty_parallel_for(workers, count, 1024, vertices_dress, &d))
         status = ty_error_set(error, TY_INTERRUPTED, "interrupted while roots were finished");
     if (status == TY_OK)
+    {
+        normals_tilt(*mesh, d.samples);
         normals_fill(*mesh);
+    }
     for (uint32_t t = 0; t < (*mesh)->triangle_count && status == TY_OK; t++)
         triangle_seams(&d, t, &s);
     ty_mesh* done = status == TY_OK && !s.failed ? split(*mesh, &s) : NULL;

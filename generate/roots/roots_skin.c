@@ -1,211 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface of roots as a distance: exact within one root, run together between roots, cut at the trunk's top.
-// Segments are found through blocks of a grid, so that it can be asked anywhere.
+// The surface of roots, from segments in blocks of a grid to one mesh: cut, relaxed, bark raised, corners mended.
 #include "roots_skin.h"
 #include <math.h>
 #include <string.h>
 #include <tsuya/base/log.h>
-#include <tsuya/base/noise.h>
 
-#define CUT_EDGE 0.4e-3f // m, rounding of the cut
 #define MOST_BLOCKS 60e6 // of the grid, with or without roots
-
-// --- one segment ---
-
-static float along(const roots_segment* s, ty_vec3 p)
-{
-    return ty_clamp(ty_dot(ty_sub(p, s->a), s->d) * s->length_1, 0.0f, 1.0f);
-}
-
-// p about the axis.
-static ty_vec3 across(const roots_segment* s, float t, ty_vec3 p)
-{
-    return ty_sub(p, ty_mad(s->a, s->d, t));
-}
-
-static ty_vec3 normal(const roots_segment* s, float t)
-{
-    return ty_mad(s->na, s->nd, t);
-}
-
-// A flat section is stretched to a round one.
-static float segment_distance(const roots_segment* s, ty_vec3 p, float* t)
-{
-    *t = along(s, p);
-    ty_vec3 q = across(s, *t, p);
-    float height = ty_dot(q, normal(s, *t));
-    return sqrtf(ty_length_sqr(q) + height * height * (s->ea + *t * s->ed)) - roots_segment_radius(s, *t);
-}
-
-// --- relief ---
-
-// Flutes along the root and small swellings across it.
-float roots_skin_relief(const roots_skin* skin, const roots_segment* s, float t, ty_vec3 p)
-{
-    const ty_roots_recipe* recipe = skin->recipe;
-    const roots_point* points = skin->network->points;
-    ty_vec3 q = across(s, t, p), n = normal(s, t);
-    float stretch = sqrtf(1.0f + s->ea + t * s->ed) - 1.0f, r = roots_segment_radius(s, t);
-    ty_vec3 side = ty_normalize(ty_mad(q, n, ty_dot(q, n) * stretch));
-    uint32_t seed = (uint32_t)recipe->seed.value + (uint32_t)skin->network->lines[s->line].key;
-    float way = ty_lerp(points[s->point].s, points[s->point + 1].s, t) / recipe->radius;
-    ty_vec3 flute = ty_add(ty_mul(side, 1.3f), ty_vec3_make(0.22f * way, 0.0f, 0.31f * way));
-    ty_vec3 swell = ty_add(ty_mul(side, 0.9f), ty_vec3_make(0.0f, 0.7f * way, 0.3f * way));
-    ty_vec3 grain = ty_add(ty_mul(side, 4.5f), ty_vec3_make(0.6f * way, 1.3f * way, 0.0f));
-    float fine = ty_clamp(r / (4.5f * skin->step) - 1.0f, 0.0f, 1.0f); // what cells cannot show is left out
-    float sum = ty_value_noise(flute, seed) + 0.35f * ty_value_noise(swell, seed + 1u);
-    sum += fine > 0.0f ? 0.3f * fine * ty_value_noise(grain, seed + 2u) : 0.0f;
-    return recipe->bark * r * sum;
-}
-
-// --- all of them ---
-
-typedef struct gathered
-{
-    roots_sample sample;
-    float radius, depth;
-} gathered;
-
-// The polynomial smooth minimum (Quilez) over a width in proportion to the thinner of both.
-static void gather(const roots_skin* skin, gathered* all, const gathered* one)
-{
-    if (all->sample.segment < 0)
-    {
-        *all = *one;
-        return;
-    }
-    float k = ty_max(skin->recipe->join * ty_min(all->radius, one->radius), 1e-9f);
-    float h = ty_clamp(0.5f + 0.5f * (all->sample.distance - one->sample.distance) / k, 0.0f, 1.0f);
-    float mixed = 4.0f * h * (1.0f - h);
-    float distance = ty_lerp(all->sample.distance, one->sample.distance, h) - 0.25f * k * mixed;
-    if (h > 0.5f)
-    {
-        all->sample.segment = one->sample.segment;
-        all->sample.at = one->sample.at;
-    }
-    all->sample.join = ty_max(ty_max(all->sample.join, one->sample.join) * (1.0f - mixed), mixed);
-    all->sample.distance = distance;
-    all->radius = ty_lerp(all->radius, one->radius, h);
-    all->depth = ty_lerp(all->depth, one->depth, h);
-}
-
-// The nearest of a root's segments from list[*i] on; *i goes on to the next root.
-static gathered line_nearest(const roots_skin* skin, int32_t end, int32_t* i, ty_vec3 p)
-{
-    const roots_segment* segments = skin->segments;
-    int line = segments[skin->list[*i]].line;
-    gathered best = {{TY_FLOAT_MAX, -1, line, 0.0f, 0.0f}, 0.0f, 0.0f};
-    for (; *i < end && segments[skin->list[*i]].line == line; ++*i)
-    {
-        float t, d = segment_distance(&segments[skin->list[*i]], p, &t);
-        if (d < best.sample.distance)
-        {
-            best.sample.distance = d;
-            best.sample.segment = skin->list[*i];
-            best.sample.at = t;
-        }
-    }
-    const roots_segment* s = &segments[best.sample.segment];
-    best.radius = roots_segment_radius(s, best.sample.at);
-    best.depth = roots_segment_depth(s, best.sample.at);
-    if (skin->recipe->bark > 0.0f && best.sample.distance < 2.0f * best.radius)
-        best.sample.distance -= roots_skin_relief(skin, s, best.sample.at, p);
-    return best;
-}
-
-float roots_skin_hold(const roots_skin* skin, float distance, float depth, float radius, ty_vec3 p)
-{
-    float over = -(roots_host_value(skin->host, p, NULL) + depth), edge = ty_max(0.3f * radius, skin->step);
-    float h = ty_clamp(0.5f - 0.5f * (distance - over) / edge, 0.0f, 1.0f);
-    return ty_lerp(distance, over, h) + edge * h * (1.0f - h);
-}
-
-static int block_at(const roots_skin* skin, ty_vec3 p)
-{
-    ty_vec3 q = ty_mul(ty_sub(p, skin->origin), 1.0f / (skin->step * TY_NET_BLOCK));
-    int i = (int)floorf(q.x), j = (int)floorf(q.y), k = (int)floorf(q.z);
-    if (i < 0 || j < 0 || k < 0 || i >= skin->blocks[0] || j >= skin->blocks[1] || k >= skin->blocks[2])
-        return -1;
-    return (k * skin->blocks[1] + j) * skin->blocks[0] + i;
-}
-
-float roots_skin_cut(const roots_skin* skin, float distance, float y)
-{
-    float above = y - skin->network->top, edge = ty_max(CUT_EDGE, skin->step);
-    float h = ty_clamp(0.5f - 0.5f * (distance - above) / edge, 0.0f, 1.0f);
-    return ty_lerp(distance, above, h) + edge * h * (1.0f - h);
-}
-
-// line -1 = all.
-static roots_sample sample_at(const roots_skin* skin, ty_vec3 p, int line)
-{
-    gathered all = {{TY_FLOAT_MAX, -1, -1, 0.0f, 0.0f}, 0.0f, 0.0f};
-    int block = block_at(skin, p);
-    if (block < 0)
-        return all.sample;
-    int32_t end = skin->begin[block + 1];
-    for (int32_t i = skin->begin[block]; i < end;)
-    {
-        int its = skin->segments[skin->list[i]].line;
-        gathered one = line_nearest(skin, end, &i, p);
-        if (line < 0 || its == line)
-            gather(skin, &all, &one);
-    }
-    if (all.sample.segment < 0)
-        return all.sample;
-    all.sample.line = skin->segments[all.sample.segment].line;
-    if (line < 0 && skin->host && all.sample.distance < all.radius)
-        all.sample.distance = roots_skin_hold(skin, all.sample.distance, all.depth, all.radius, p);
-    all.sample.distance = roots_skin_cut(skin, all.sample.distance, p.y);
-    return all.sample;
-}
-
-roots_sample roots_skin_at(const roots_skin* skin, ty_vec3 p)
-{
-    return sample_at(skin, p, -1);
-}
-
-roots_sample roots_skin_line_at(const roots_skin* skin, ty_vec3 p, int line)
-{
-    return sample_at(skin, p, line);
-}
-
-ty_vec3 roots_skin_normal(const roots_skin* skin, ty_vec3 p)
-{
-    // Four corners of a tetrahedron are enough for a gradient.
-    static const float corners[4][3] = {{1, -1, -1}, {-1, -1, 1}, {-1, 1, -1}, {1, 1, 1}};
-    ty_vec3 sum = {0.0f, 0.0f, 0.0f};
-    for (int i = 0; i < 4; i++)
-    {
-        ty_vec3 d = {corners[i][0], corners[i][1], corners[i][2]};
-        roots_sample sample = roots_skin_at(skin, ty_mad(p, d, 0.25f * skin->step));
-        if (sample.segment >= 0)
-            sum = ty_mad(sum, d, sample.distance);
-    }
-    return ty_normalize(sum);
-}
-
-roots_point roots_skin_point(const roots_skin* skin, roots_sample sample)
-{
-    const roots_point* a = &skin->network->points[skin->segments[sample.segment].point];
-    const roots_point* b = a + 1;
-    float t = sample.at;
-    return (roots_point){.p = ty_lerp3(a->p, b->p, t),
-                         .n = ty_lerp3(a->n, b->n, t),
-                         .r = ty_lerp(a->r, b->r, t),
-                         .flat = ty_lerp(a->flat, b->flat, t),
-                         .sink = ty_lerp(a->sink, b->sink, t),
-                         .s = ty_lerp(a->s, b->s, t),
-                         .birth = ty_lerp(a->birth, b->birth, t)};
-}
-
-ty_vec2 roots_skin_uv(const roots_skin* skin, ty_vec3 p, roots_sample sample)
-{
-    roots_point axis = roots_skin_point(skin, sample);
-    ty_vec3 q = ty_sub(p, axis.p), t = ty_normalize(skin->segments[sample.segment].d);
-    float angle = ty_atan2(ty_dot(q, ty_cross(t, axis.n)), ty_dot(q, axis.n));
-    return (ty_vec2){0.5f + angle * (0.5f * TY_INV_PI), axis.s};
-}
 
 // --- segments ---
 
@@ -361,13 +161,37 @@ void roots_skin_destroy(roots_skin* skin)
     ty_free(skin);
 }
 
-ty_status roots_skin_mesh(const roots_skin* skin, ty_workers* workers, ty_mesh** out, ty_error* error)
+// --- the mesh ---
+
+typedef struct raising
+{
+    const roots_skin* skin;
+    ty_mesh* mesh;
+} raising;
+
+// Between the grid's nodes the net knows the field in part: each vertex goes to the zero of the roots themselves, as
+// far as a part of a cell, and out by the relief of the bark.
+static void vertices_raise(void* context, int64_t begin, int64_t end, int worker)
+{
+    const raising* r = context;
+    float most = 0.2f * r->skin->step;
+    (void)worker;
+    for (int64_t v = begin; v < end; v++)
+    {
+        ty_vec3 *p = &r->mesh->positions[v], n;
+        float relief;
+        roots_sample sample = roots_skin_look(r->skin, *p, &n, &relief);
+        *p = ty_mad(*p, n, relief - ty_clamp(sample.distance, -most, most));
+    }
+}
+
+static ty_status surface_find(const roots_skin* skin, ty_workers* workers, ty_mesh** out, ty_net_pieces* pieces,
+                              ty_error* error)
 {
     enum
     {
         RELAX = 8, // rounds
     };
-    const float corner = ty_radians(20.0f);
     ty_net_def def = {.origin = skin->origin,
                       .step = skin->step,
                       .blocks = {skin->blocks[0], skin->blocks[1], skin->blocks[2]},
@@ -375,25 +199,39 @@ ty_status roots_skin_mesh(const roots_skin* skin, ty_workers* workers, ty_mesh**
                       .active_count = skin->active_count,
                       .fill = roots_skin_fill,
                       .context = (void*)skin};
-    double start = ty_time_now();
     ty_net* net;
-    ty_net_pieces pieces = {0};
-    *out = NULL;
+    double start = ty_time_now();
     ty_status status = ty_net_create(&def, workers, &net, error);
     if (status != TY_OK)
         return status;
     double cut = ty_time_now();
-    if (!ty_net_relax(net, RELAX, workers))
-        status = ty_error_set(error, TY_INTERRUPTED, "interrupted while the surface of roots was made");
-    if (status == TY_OK)
-        status = ty_net_mesh(net, out, &pieces, error);
+    status = ty_net_relax(net, RELAX, workers)
+                 ? ty_net_mesh(net, out, pieces, error)
+                 : ty_error_set(error, TY_INTERRUPTED, "interrupted while the surface of roots was made");
     ty_net_destroy(net);
+    ty_log(TY_LOG_DEBUG, "roots: surface found in %.2f s, relaxed in %.2f s; %d shells, %d voids", cut - start,
+           ty_time_now() - cut, pieces->shells, pieces->voids);
+    return status;
+}
+
+ty_status roots_skin_mesh(const roots_skin* skin, ty_workers* workers, ty_mesh** out, ty_error* error)
+{
+    const float corner = ty_radians(20.0f);
+    ty_net_pieces pieces = {0};
+    *out = NULL;
+    ty_status status = surface_find(skin, workers, out, &pieces, error);
+    if (status != TY_OK)
+        return status;
+    raising r = {skin, *out};
+    double start = ty_time_now();
+    if (!ty_parallel_for(workers, (*out)->vertex_count, 1024, vertices_raise, &r))
+        status = ty_error_set(error, TY_INTERRUPTED, "interrupted while the surface of roots was made");
+    double raised = ty_time_now();
     if (status == TY_OK)
         status = ty_mesh_mend_corners(*out, corner, NULL, error);
-    if (status == TY_OK)
-        ty_log(TY_LOG_DEBUG, "roots: surface found in %.2f s, relaxed in %.2f s; %d shells, %d voids", cut - start,
-               ty_time_now() - cut, pieces.shells, pieces.voids);
-    else
+    ty_log(TY_LOG_DEBUG, "roots: bark raised in %.2f s, corners mended in %.2f s", raised - start,
+           ty_time_now() - raised);
+    if (status != TY_OK)
     {
         ty_mesh_destroy(*out);
         *out = NULL;

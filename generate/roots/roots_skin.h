@@ -36,9 +36,7 @@ static inline float roots_segment_radius(const roots_segment* s, float t)
     return s->ra + t * s->rd;
 }
 
-// Height of the relief of bark over the smooth surface of a segment's root, m.
-float roots_skin_relief(const roots_skin* skin, const roots_segment* segment, float t, ty_vec3 p);
-// The largest that it gets, of the radius.
+// The largest relief of bark, of the radius and of the recipe's `bark`.
 #define ROOTS_RELIEF_MOST 1.65f
 
 static inline float roots_segment_depth(const roots_segment* s, float t)
@@ -46,9 +44,37 @@ static inline float roots_segment_depth(const roots_segment* s, float t)
     return s->sink_a + t * s->sink_d;
 }
 
-// The distance of what is left of a root where it would reach deeper than `depth` under the host; p is near its
-// surface.
-float roots_skin_hold(const roots_skin* skin, float distance, float depth, float radius, ty_vec3 p);
+// How far from each other two roots begin to run together there, m: in proportion to the thinner, and not at all where
+// both have one axis, as a branch has inside its parent.
+static inline float roots_join_width(float join, float radius_a, float radius_b, ty_vec3 axis_a, ty_vec3 axis_b)
+{
+    float apart = ty_length_sqr(ty_sub(axis_a, axis_b)) / ty_sqr(ty_max(radius_a, radius_b));
+    float part = ty_min(apart, 1.0f);
+    return ty_max(join * ty_min(radius_a, radius_b) * part * (2.0f - part), 1e-9f);
+}
+
+// A smooth maximum; *part is how much of b there is in it.
+static inline float roots_cut(float a, float b, float edge, float* part)
+{
+    float h = ty_clamp(0.5f - 0.5f * (a - b) / edge, 0.0f, 1.0f);
+    *part = h;
+    return ty_lerp(a, b, h) + edge * h * (1.0f - h);
+}
+
+// What is left of a root where it would reach deeper than `depth` under the host; p is near its surface.
+static inline float roots_skin_hold(const roots_skin* skin, float distance, float depth, float radius, ty_vec3 p,
+                                    float* part)
+{
+    float over = -(roots_host_value(skin->host, p, NULL) + depth);
+    return roots_cut(distance, over, ty_max(0.3f * radius, skin->step), part);
+}
+
+#define ROOTS_TOP_EDGE 0.4e-3f // m, rounding of the cut at the top
+
 // The distance where the trunk is cut off at the top.
-float roots_skin_cut(const roots_skin* skin, float distance, float y);
+static inline float roots_skin_top(const roots_skin* skin, float distance, float y, float* part)
+{
+    return roots_cut(distance, y - skin->network->top, ty_max(ROOTS_TOP_EDGE, skin->step), part);
+}
+
 void roots_skin_fill(void* skin, const int block[3], float values[TY_NET_NODES]); // a ty_net_fill

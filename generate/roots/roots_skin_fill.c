@@ -5,7 +5,6 @@
 enum
 {
     NODES = TY_NET_NODES,
-    MOST_NEAR = 1024, // segments of one root that are looked at together
 };
 
 // Nodes of a block, and the nearest of one root or of all.
@@ -31,22 +30,33 @@ static void nodes_place(const roots_skin* skin, const int block[3], nodes* out)
     }
 }
 
+// In plain loops that become vectors: clamps that share one with arithmetic would be branches.
 static void segment_meet(const roots_segment* restrict s, int32_t number, const nodes* restrict at,
                          nearest* restrict best)
 {
+    float t[NODES], d[NODES];
     for (int i = 0; i < NODES; i++)
     {
         float px = at->x[i] - s->a.x, py = at->y[i] - s->a.y, pz = at->z[i] - s->a.z;
-        float t = (px * s->d.x + py * s->d.y + pz * s->d.z) * s->length_1;
-        t = t < 0.0f ? 0.0f : t;
-        t = t > 1.0f ? 1.0f : t;
-        float qx = px - t * s->d.x, qy = py - t * s->d.y, qz = pz - t * s->d.z;
-        float h = qx * (s->na.x + t * s->nd.x) + qy * (s->na.y + t * s->nd.y) + qz * (s->na.z + t * s->nd.z);
-        float d = sqrtf(qx * qx + qy * qy + qz * qz + h * h * (s->ea + t * s->ed)) - (s->ra + t * s->rd);
-        bool nearer = d < best->distance[i];
-        best->distance[i] = nearer ? d : best->distance[i];
-        best->t[i] = nearer ? t : best->t[i];
+        float u = (px * s->d.x + py * s->d.y + pz * s->d.z) * s->length_1;
+        t[i] = u < 0.0f ? 0.0f : u;
+    }
+    for (int i = 0; i < NODES; i++)
+        t[i] = t[i] > 1.0f ? 1.0f : t[i];
+    for (int i = 0; i < NODES; i++)
+    {
+        float px = at->x[i] - s->a.x, py = at->y[i] - s->a.y, pz = at->z[i] - s->a.z;
+        float qx = px - t[i] * s->d.x, qy = py - t[i] * s->d.y, qz = pz - t[i] * s->d.z;
+        float nx = s->na.x + t[i] * s->nd.x, ny = s->na.y + t[i] * s->nd.y, nz = s->na.z + t[i] * s->nd.z;
+        float h = qx * nx + qy * ny + qz * nz;
+        d[i] = sqrtf(qx * qx + qy * qy + qz * qz + h * h * (s->ea + t[i] * s->ed)) - (s->ra + t[i] * s->rd);
+    }
+    for (int i = 0; i < NODES; i++)
+    {
+        bool nearer = d[i] < best->distance[i];
+        best->t[i] = nearer ? t[i] : best->t[i];
         best->segment[i] = nearer ? number : best->segment[i];
+        best->distance[i] = nearer ? d[i] : best->distance[i];
     }
 }
 
@@ -74,20 +84,10 @@ static range segment_range(const roots_segment* s, ty_vec3 middle, float half)
 
 // --- roots together ---
 
-static void relief_add(const roots_skin* skin, const nodes* at, nearest* n)
-{
-    for (int i = 0; i < NODES; i++)
-    {
-        const roots_segment* s = &skin->segments[n->segment[i]];
-        float reach = ROOTS_RELIEF_MOST * skin->recipe->bark * roots_segment_radius(s, n->t[i]) + 2.0f * skin->step;
-        if (fabsf(n->distance[i]) < reach)
-            n->distance[i] -= roots_skin_relief(skin, s, n->t[i], ty_vec3_make(at->x[i], at->y[i], at->z[i]));
-    }
-}
-
 typedef struct together
 {
     float distance[NODES], radius[NODES], depth[NODES];
+    ty_vec3 axis[NODES];
     bool any;
 } together;
 
@@ -97,18 +97,21 @@ static void together_take(const roots_skin* skin, together* all, const nearest* 
     {
         const roots_segment* s = &skin->segments[one->segment[i]];
         float r = roots_segment_radius(s, one->t[i]), d = one->distance[i], depth = roots_segment_depth(s, one->t[i]);
+        ty_vec3 axis = ty_mad(s->a, s->d, one->t[i]);
         if (!all->any)
         {
             all->distance[i] = d;
             all->radius[i] = r;
             all->depth[i] = depth;
+            all->axis[i] = axis;
             continue;
         }
-        float k = ty_max(skin->recipe->join * ty_min(all->radius[i], r), 1e-9f);
+        float k = roots_join_width(skin->recipe->join, all->radius[i], r, all->axis[i], axis);
         float h = ty_clamp(0.5f + 0.5f * (all->distance[i] - d) / k, 0.0f, 1.0f);
         all->distance[i] = ty_lerp(all->distance[i], d, h) - k * h * (1.0f - h);
         all->radius[i] = ty_lerp(all->radius[i], r, h);
         all->depth[i] = ty_lerp(all->depth[i], depth, h);
+        all->axis[i] = ty_lerp3(all->axis[i], axis, h);
     }
     all->any = true;
 }
@@ -119,15 +122,19 @@ static void host_cut(const roots_skin* skin, const nodes* at, ty_vec3 middle, to
     if (!skin->host || roots_host_value(skin->host, middle, NULL) > 1.2f * block_half(skin) + 2.0f * skin->step)
         return;
     for (int i = 0; i < NODES; i++)
+    {
+        float part;
+        ty_vec3 p = {at->x[i], at->y[i], at->z[i]};
         if (all->distance[i] < all->radius[i])
-            all->distance[i] = roots_skin_hold(skin, all->distance[i], all->depth[i], all->radius[i],
-                                               ty_vec3_make(at->x[i], at->y[i], at->z[i]));
+            all->distance[i] = roots_skin_hold(skin, all->distance[i], all->depth[i], all->radius[i], p, &part);
+    }
 }
 
 static void top_cut(const roots_skin* skin, const nodes* at, const together* all, float values[NODES])
 {
+    float part;
     for (int i = 0; i < NODES; i++)
-        values[i] = roots_skin_cut(skin, all->distance[i], at->y[i]);
+        values[i] = roots_skin_top(skin, all->distance[i], at->y[i], &part);
 }
 
 static void block_fill(const roots_skin* skin, const int block[3], int32_t begin, int32_t end, float nearby,
@@ -154,8 +161,6 @@ static void block_fill(const roots_skin* skin, const int block[3], int32_t begin
         }
         if (!met)
             continue;
-        if (skin->recipe->bark > 0.0f)
-            relief_add(skin, &at, &one);
         together_take(skin, &all, &one);
     }
     host_cut(skin, &at, middle, &all);
@@ -180,7 +185,7 @@ void roots_skin_fill(void* context, const int block[3], float values[NODES])
         all = (range){ty_min(all.least, one.least), ty_min(all.most, one.most)};
         wide = ty_max(wide, ty_max(s->ra, s->ra + s->rd));
     }
-    float reach = 2.0f * skin->step + ROOTS_RELIEF_MOST * skin->recipe->bark * wide, join = skin->recipe->join * wide;
+    float reach = 2.0f * skin->step, join = skin->recipe->join * wide;
     float half = block_half(skin), under = skin->host ? roots_host_value(skin->host, at, NULL) : TY_FLOAT_MAX;
     bool cut = at.y + half > skin->network->top - reach || under < 1.2f * half + 2.0f * skin->step;
     if (all.least > reach + join || (all.most < -reach && !cut))
