@@ -173,7 +173,7 @@ static float mesh_exact(const roots_host* host, ty_vec3 p, float d, ty_vec3* nor
     {
         ty_vec3 n = ty_length_sqr(*normal) > 0.25f ? *normal : facet_normal(host, c.triangle);
         *normal = ty_mul(n, side_of(host, &c, n));
-        return c.distance * side_of(host, &c, n);
+        return ty_dot(ty_sub(p, c.position), *normal) < 0.0f ? -c.distance : c.distance;
     }
     ty_vec3 away = ty_mul(ty_sub(p, c.position), 1.0f / c.distance);
     float side = fabsf(d) > 0.75f * step ? (d < 0.0f ? -1.0f : 1.0f) : side_of(host, &c, away);
