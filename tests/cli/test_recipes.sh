@@ -10,7 +10,7 @@ steps: 600
 drops: { count: 4 }
 loop: { frames: 6, span: 300, drift: 3 }
 Y
-printf 'tsuya: 1\nkind: roots\ncount: 3\nbranch: { levels: 1 }\ntip: 2\ndetail: 2\n' >roots.yaml
+printf 'tsuya: 1\nkind: roots\ncount: 3\nsecond: { spacing: 0 }\ntip: 2\ndetail: 2\n' >roots.yaml
 
 expect 2 "$tsuya" fill fill.yaml
 says "-o OUT.####.exr"
@@ -18,15 +18,15 @@ expect 2 "$tsuya" fill fill.yaml -o out.exr
 says "####"
 expect 2 "$tsuya" fill fill.yaml -o 'out.####.jpg'
 says ".exr"
-expect 2 "$tsuya" roots roots.yaml -o roots.glb
-expect 2 "$tsuya" roots roots.yaml -o 'roots.##.ply'
+expect 2 "$tsuya" roots roots.yaml -o roots.stl
+expect 2 "$tsuya" roots roots.yaml -o 'roots.##.exr'
 expect 3 "$tsuya" roots fill.yaml -o x.ply
 says "fill.yaml:2:7"
 says "expected a recipe of kind 'roots', got 'fill'"
 expect 3 "$tsuya" fill fill.yaml -o 'x.##.exr' --set loop.span=601
 says "loop.span"
-expect 3 "$tsuya" roots roots.yaml -o x.ply --set brunch.levels=1
-says "did you mean 'branch'?"
+expect 3 "$tsuya" roots roots.yaml -o x.ply --set secund.spacing=1
+says "did you mean 'second'?"
 absent x.ply
 absent x.01.exr
 expect 4 "$tsuya" fill fill.yaml -o 'nowhere/x.##.exr'
