@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes that change with time: files of one topology, read as they are needed and blended between two.
+// Meshes that change with time: files read as they are needed, blended between two where they have one topology.
 #include "loader.h"
 #include <string.h>
 #include <tsuya/geometry/mesh_file.h>
@@ -77,10 +77,16 @@ static bool same_attributes(const ty_mesh* a, const ty_mesh* b)
     return same;
 }
 
+// What materials were promised.
+static bool same_data(const ty_mesh* a, const ty_mesh* b)
+{
+    return !a->uvs == !b->uvs && same_attributes(a, b);
+}
+
 static bool same_topology(const ty_mesh* a, const ty_mesh* b)
 {
-    return a->vertex_count == b->vertex_count && a->triangle_count == b->triangle_count && !a->uvs == !b->uvs &&
-           same_attributes(a, b) && memcmp(a->triangles, b->triangles, a->triangle_count * sizeof(*a->triangles)) == 0;
+    return a->vertex_count == b->vertex_count && a->triangle_count == b->triangle_count && same_data(a, b) &&
+           memcmp(a->triangles, b->triangles, a->triangle_count * sizeof(*a->triangles)) == 0;
 }
 
 // The file of index i (from 0) against the first that was read, if any. NULL after a report.
@@ -95,11 +101,19 @@ static ty_mesh* read_file(ty_loader* loader, const ty_mesh_sequence* s, int i, c
         ty_report_error(loader->errors, place, "mesh", &error);
         return NULL;
     }
-    if (like && !same_topology(like, mesh))
+    if (like && !s->timing.blend && !same_data(like, mesh))
+    {
+        ty_report(loader->errors, place, TY_BAD_FILE,
+                  "mesh: frame %d, '%s': its attributes, or whether it has uv, are not those of the others",
+                  s->first + i, path);
+        ty_mesh_destroy(mesh);
+        return NULL;
+    }
+    if (like && s->timing.blend && !same_topology(like, mesh))
     {
         ty_report(loader->errors, place, TY_BAD_FILE,
                   "mesh: frame %d, '%s': its %u vertices, %u triangles or attributes are not those of the others (%u, "
-                  "%u): a sequence has one topology",
+                  "%u): a sequence has one topology, but with 'interpolate: none'",
                   s->first + i, path, mesh->vertex_count, mesh->triangle_count, like->vertex_count,
                   like->triangle_count);
         ty_mesh_destroy(mesh);
@@ -144,6 +158,24 @@ static void blend_floats(float* out, const float* a, const float* b, size_t coun
         out[i] = a[i] + (b[i] - a[i]) * weight;
 }
 
+// Of another topology. Who holds on to the list of attributes finds the new ones in it.
+static void replace(ty_mesh* out, const ty_mesh* from)
+{
+    ty_mesh *copy = ty_mesh_copy(from), old = *out;
+    *out = *copy;
+    *copy = old;
+    ty_mesh_attribute* list = out->attributes;
+    for (int k = 0; k < out->attribute_count; ++k)
+    {
+        float* values = old.attributes[k].values;
+        old.attributes[k].values = list[k].values;
+        list[k].values = values;
+    }
+    out->attributes = old.attributes;
+    copy->attributes = list;
+    ty_mesh_destroy(copy);
+}
+
 static void blend(ty_mesh* out, const ty_mesh* a, const ty_mesh* b, float weight)
 {
     size_t n = out->vertex_count;
@@ -186,6 +218,8 @@ static bool show(ty_loader* loader, ty_asset* asset)
         return false;
     if (!asset->mesh)
         asset->mesh = ty_mesh_copy(s->frames[0]);
+    else if (!s->timing.blend)
+        replace(asset->mesh, s->frames[0]);
     blend(asset->mesh, s->frames[0], s->frames[wanted[0] == wanted[1] ? 0 : 1], weight);
     memcpy(s->shown, wanted, sizeof wanted);
     s->weight = weight;

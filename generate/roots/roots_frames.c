@@ -31,8 +31,9 @@ typedef struct drawing
 {
     const roots_result* result;
     ty_mesh* mesh;
-    roots_point* axis; // [vertex_count] where the centre line is nearest
-    float* radius;     // [vertex_count] of mesh
+    roots_point* axis;       // [vertex_count] where the centre line is nearest
+    const float *age, *full; // [vertex_count] of the still mesh: what it says is what happens
+    float* radius;           // the same of mesh
     float t;
 } drawing;
 
@@ -44,8 +45,8 @@ static void axes_find(void* context, int64_t begin, int64_t end, int worker)
     for (int64_t v = begin; v < end; v++)
     {
         roots_sample sample = roots_skin_at(d->result->skin, still->positions[v]);
-        d->axis[v] = sample.segment >= 0 ? roots_skin_point(d->result->skin, sample)
-                                         : (roots_point){.p = still->positions[v], .birth = 1.0f};
+        d->axis[v] =
+            sample.segment >= 0 ? roots_skin_point(d->result->skin, sample) : (roots_point){.p = still->positions[v]};
     }
 }
 
@@ -57,9 +58,9 @@ static void vertices_draw(void* context, int64_t begin, int64_t end, int worker)
     for (int64_t v = begin; v < end; v++)
     {
         const roots_point* axis = &d->axis[v];
-        float grown = roots_growth_at(axis->birth, d->t);
+        float grown = roots_growth_at(d->age[v], d->t);
         d->mesh->positions[v] = ty_mad(center_at(axis, grown), ty_sub(still->positions[v], axis->p), grown);
-        d->radius[v] = axis->r * grown;
+        d->radius[v] = d->full[v] * grown;
     }
 }
 
@@ -77,6 +78,8 @@ static ty_status frames_draw(const roots_result* result, const ty_mesh_sink* sin
     int count = result->recipe->grow.frames;
     drawing d = {.result = result, .mesh = ty_mesh_copy(result->mesh)};
     d.axis = TY_TRY_ALLOC(roots_point, d.mesh->vertex_count);
+    d.age = ty_mesh_find_attribute(result->mesh, "age")->values;
+    d.full = ty_mesh_find_attribute(result->mesh, "radius")->values;
     d.radius = ty_mesh_add_attribute(d.mesh, "radius", 1);
     ty_status status = TY_OK;
     if (!d.axis)

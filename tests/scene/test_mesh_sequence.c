@@ -136,6 +136,39 @@ static void attributes_change_too(void** state)
     fixture_near(ty_input_float(&input, &fixture_scene->shading, &point), 2.5f, 1e-5f);
 }
 
+// A square of two triangles among single ones: with `interpolate: none` each frame is as its file.
+static void topology_may_change(void** state)
+{
+    (void)state;
+    write_frames();
+    fixture_write("m.0006.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                                "property float z\nproperty float age\nelement face 2\nproperty list uchar int "
+                                "vertex_indices\nend_header\n0 0 2 7\n1 0 2 7\n1 1 2 7\n0 1 2 7\n3 0 1 2\n3 0 2 3\n");
+    load("tsuya: 1\ntimeline: { end: 3 }\nassets: { a: { mesh: m.####.ply, interpolate: none } }\n"
+         "materials: { m: { model: surface, specular_roughness: { attribute: age, scale: .1 } } }\n"
+         "objects: [ { mesh: a, material: m } ]\n");
+    ty_input input = ty_input_scalar(1.0f);
+    input.attribute_index = 0;
+    ty_surface_point point = {.u = 0.25f, .v = 0.25f, .triangle = 1};
+    fixture_near(height(), 0.0f, 1e-5f);
+    at_frame(2, 2.0f);
+    assert_int_equal(ty_world_prototype_mesh(fixture_scene->world, 0)->triangle_count, 2);
+    fixture_near(ty_input_float(&input, &fixture_scene->shading, &point), 7.0f, 1e-5f);
+    at_frame(2.75, 2.0f); // not blended
+    at_frame(3, 4.0f);
+    assert_int_equal(ty_world_prototype_mesh(fixture_scene->world, 0)->triangle_count, 1);
+    at_frame(2, 2.0f);
+    at_frame(1, 0.0f);
+    assert_int_equal(fixture_check(SCENE("")), TY_BAD_FILE); // blended they cannot be
+    assert_non_null(strstr(fixture_errors.items[0].text, "interpolate: none"));
+    fixture_write("m.0007.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                                "end_header\n0 0 2\n1 0 2\n1 1 2\n3 0 1 2\n");
+    assert_int_equal(fixture_check(SCENE(", interpolate: none")), TY_BAD_FILE);
+    assert_non_null(strstr(fixture_errors.items[0].text, "frame 7,"));
+    assert_non_null(strstr(fixture_errors.items[0].text, "attributes"));
+}
+
 static void wrong_files_are_named(void** state)
 {
     (void)state;
@@ -185,7 +218,7 @@ int main(void)
         FIXTURE_TEST(files_follow_the_time),    FIXTURE_TEST(only_what_changes_is_rebuilt),
         FIXTURE_TEST(frames_do_not_remember),   FIXTURE_TEST(focus_follows_the_mesh),
         FIXTURE_TEST(attributes_change_too),    FIXTURE_TEST(wrong_files_are_named),
-        FIXTURE_TEST(named_frames_are_covered),
+        FIXTURE_TEST(named_frames_are_covered), FIXTURE_TEST(topology_may_change),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
