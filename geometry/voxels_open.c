@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Winding numbers about open parts: exact where the surface is, between places four steps apart where it is not; and
-// the lids over the openings.
+// Winding numbers about open parts: between places four steps apart where there is no surface, from there up to it by
+// their mean value property; and the lids over the openings.
 #include "voxels_open.h"
 #include <string.h>
 
 enum
 {
-    COARSE = 4, // steps between places
+    COARSE = 4,  // steps between places
+    ROUNDS = 10, // of means
 };
+
+#define UNKNOWN (-1e30f)
 
 typedef struct opening
 {
     voxels_scan* s;
     const winding* w;
     float* wound;   // winding number at each node
+    float* next;    // after a round
     float* lattice; // at every fourth
     int size[3];    // of the lattice
 } opening;
@@ -75,10 +79,12 @@ static void block_fill(const opening* o, int a, int b, int c)
     for (int k = low[2]; k < end[2]; k++)
         for (int j = low[1]; j < end[1]; j++)
             for (int i = low[0]; i < end[0]; i++)
-                o->wound[voxels_index(v, i, j, k)] =
-                    clean ? between(o, a, b, c, part * (float)(i - low[0]), part * (float)(j - low[1]),
-                                    part * (float)(k - low[2]))
-                          : winding_at(o->w, voxels_place(v, i, j, k));
+            {
+                size_t node = voxels_index(v, i, j, k);
+                float x = part * (float)(i - low[0]), y = part * (float)(j - low[1]), z = part * (float)(k - low[2]);
+                o->s->turns[node] = clean; // stays as it is
+                o->wound[node] = clean ? between(o, a, b, c, x, y, z) : UNKNOWN;
+            }
 }
 
 static void blocks_fill(void* context, int64_t begin, int64_t end, int worker)
@@ -88,6 +94,73 @@ static void blocks_fill(void* context, int64_t begin, int64_t end, int worker)
     for (int64_t row = begin; row < end; row++)
         for (int a = 0; a < o->size[0] - 1; a++)
             block_fill(o, a, (int)(row % (o->size[1] - 1)), (int)(row / (o->size[1] - 1)));
+}
+
+// The number is harmonic off the surface: that of a node is the mean of its neighbours' but for those behind the
+// surface, which is between two nodes only where their distances are no more than a step together.
+static float mean_of(const opening* o, int i, int j, int k)
+{
+    const ty_voxels* v = o->s->v;
+    const int at[3] = {i, j, k};
+    const size_t stride[3] = {1, (size_t)v->size[0], (size_t)v->size[0] * (size_t)v->size[1]};
+    size_t node = voxels_index(v, i, j, k);
+    float sum = 0.0f, count = 0.0f;
+    for (int e = 0; e < 6; e++)
+    {
+        int axis = e >> 1, to = at[axis] + (e & 1 ? 1 : -1);
+        if (to < 0 || to >= v->size[axis])
+            continue;
+        size_t other = e & 1 ? node + stride[axis] : node - stride[axis];
+        if (o->wound[other] == UNKNOWN || fabsf(v->values[node]) + fabsf(v->values[other]) <= 1.01f * v->step)
+            continue;
+        sum += o->wound[other];
+        count += 1.0f;
+    }
+    return count > 0.0f ? sum / count : o->wound[node];
+}
+
+static void layers_mean(void* context, int64_t begin, int64_t end, int worker)
+{
+    const opening* o = context;
+    const ty_voxels* v = o->s->v;
+    (void)worker;
+    for (int k = (int)begin; k < (int)end; k++)
+        for (int j = 0; j < v->size[1]; j++)
+            for (int i = 0; i < v->size[0]; i++)
+            {
+                size_t node = voxels_index(v, i, j, k);
+                o->next[node] = o->s->turns[node] ? o->wound[node] : mean_of(o, i, j, k);
+            }
+}
+
+// Nodes on the surface itself, and in gaps too narrow for places.
+static void layers_rest(void* context, int64_t begin, int64_t end, int worker)
+{
+    const opening* o = context;
+    const ty_voxels* v = o->s->v;
+    (void)worker;
+    for (int k = (int)begin; k < (int)end; k++)
+        for (int j = 0; j < v->size[1]; j++)
+            for (int i = 0; i < v->size[0]; i++)
+            {
+                float* wound = &o->wound[voxels_index(v, i, j, k)];
+                *wound = *wound == UNKNOWN ? winding_at(o->w, voxels_place(v, i, j, k)) : *wound;
+            }
+}
+
+static void numbers_find(opening* o, ty_workers* workers)
+{
+    int layers = o->s->v->size[2];
+    ty_parallel_all(workers, (int64_t)o->size[1] * o->size[2], 4, lattice_fill, o);
+    ty_parallel_all(workers, (int64_t)(o->size[1] - 1) * (o->size[2] - 1), 4, blocks_fill, o);
+    for (int round = 0; round < ROUNDS; round++)
+    {
+        ty_parallel_all(workers, layers, 2, layers_mean, o);
+        float* done = o->next;
+        o->next = o->wound;
+        o->wound = done;
+    }
+    ty_parallel_all(workers, layers, 2, layers_rest, o);
 }
 
 static void nodes_sign(void* context, int64_t begin, int64_t end, int worker)
@@ -189,18 +262,19 @@ bool voxels_open_fill(voxels_scan* s, const mesh_parts* parts, ty_workers* worke
         places *= (size_t)(o.size[i] = (s->v->size[i] + COARSE - 1) / COARSE + 1);
     o.lattice = TY_TRY_ALLOC(float, places);
     o.wound = TY_TRY_ALLOC(float, count);
+    o.next = TY_TRY_ALLOC(float, count);
     winding* w = winding_create(s->mesh, parts->open, parts->open_count, parts->side);
     o.w = w;
-    bool held = o.lattice && o.wound && w;
+    bool held = o.lattice && o.wound && o.next && w;
     if (held)
     {
-        ty_parallel_all(workers, (int64_t)o.size[1] * o.size[2], 4, lattice_fill, &o);
-        ty_parallel_all(workers, (int64_t)(o.size[1] - 1) * (o.size[2] - 1), 4, blocks_fill, &o);
+        numbers_find(&o, workers);
         ty_parallel_all(workers, (int64_t)count, 1 << 16, nodes_sign, &o);
         held = lids_close(&o, workers);
     }
     winding_destroy(w);
     ty_free(o.lattice);
     ty_free(o.wound);
+    ty_free(o.next);
     return held;
 }
