@@ -28,6 +28,22 @@ static roots_segment segment_make(const roots_point* a, const roots_point* b, in
                            .point = point};
 }
 
+// How far a point of a line is out of the root that the line leaves or grows into there, of its radius.
+static float open_at(const roots_network* net, const roots_line* line, const roots_point* p)
+{
+    float open = 1.0f;
+    for (int end = 0; end < 2; end++)
+    {
+        int other = end ? line->end : line->parent, point = end ? line->end_point : line->parent_point;
+        if (other < 0 || point < 0 || net->lines[other].kind == ROOTS_TRUNK || line->kind == ROOTS_MAIN)
+            continue;
+        const roots_point* q = &net->points[point];
+        float part = ty_min(ty_length_sqr(ty_sub(p->p, q->p)) / ty_sqr(q->r), 1.0f);
+        open = ty_min(open, part * (2.0f - part));
+    }
+    return open;
+}
+
 static bool segments_make(roots_skin* skin)
 {
     const roots_network* net = skin->network;
@@ -38,8 +54,11 @@ static bool segments_make(roots_skin* skin)
         for (int i = 0; i + 1 < net->lines[line].count; i++)
         {
             int point = net->lines[line].first + i;
-            skin->segments[skin->segment_count++] =
-                segment_make(&net->points[point], &net->points[point + 1], line, point);
+            const roots_point *a = &net->points[point], *b = a + 1;
+            roots_segment* s = &skin->segments[skin->segment_count++];
+            *s = segment_make(a, b, line, point);
+            s->open_a = open_at(net, &net->lines[line], a);
+            s->open_d = open_at(net, &net->lines[line], b) - s->open_a;
         }
     return true;
 }
@@ -48,7 +67,7 @@ static ty_bounds segment_bounds(const roots_skin* skin, const roots_segment* s)
 {
     const ty_roots_recipe* recipe = skin->recipe;
     float r = ty_max(s->ra, s->ra + s->rd);
-    float reach = r * (1.0f + ROOTS_RELIEF_MOST * recipe->bark + 0.25f * recipe->join) + 3.0f * skin->step;
+    float reach = r * (1.0f + ROOTS_RELIEF_MOST * recipe->bark + recipe->join) + 3.0f * skin->step;
     ty_vec3 margin = {reach, reach, reach}, b = ty_add(s->a, s->d);
     return (ty_bounds){ty_sub(ty_min3(s->a, b), margin), ty_add(ty_max3(s->a, b), margin)};
 }

@@ -12,7 +12,8 @@ typedef struct roots_segment
     float ra, rd;   // m
     float ea, ed;   // 1 / flat^2 - 1
     float sink_a, sink_d;
-    int line, point; // it goes from point to point + 1
+    float open_a, open_d; // 0..1, how far it is out of what it grows from and into: within that it does not swell it
+    int line, point;      // it goes from point to point + 1
 } roots_segment;
 
 struct roots_skin
@@ -44,13 +45,15 @@ static inline float roots_segment_depth(const roots_segment* s, float t)
     return s->sink_a + t * s->sink_d;
 }
 
-// How far from each other two roots begin to run together there, m: in proportion to the thinner, and not at all where
-// both have one axis, as a branch has inside its parent.
-static inline float roots_join_width(float join, float radius_a, float radius_b, ty_vec3 axis_a, ty_vec3 axis_b)
+// How far from each other two roots begin to run together there, m: in proportion to the thinner.
+static inline float roots_join_width(float join, float radius_a, float radius_b, float open_a, float open_b)
 {
-    float apart = ty_length_sqr(ty_sub(axis_a, axis_b)) / ty_sqr(ty_max(radius_a, radius_b));
-    float part = ty_min(apart, 1.0f);
-    return ty_max(join * ty_min(radius_a, radius_b) * part * (2.0f - part), 1e-9f);
+    return ty_max(join * ty_min(radius_a, radius_b) * ty_min(open_a, open_b), 1e-9f);
+}
+
+static inline float roots_segment_open(const roots_segment* s, float t)
+{
+    return s->open_a + t * s->open_d;
 }
 
 // A smooth maximum; *part is how much of b there is in it.

@@ -135,8 +135,7 @@ static void near_find(const roots_skin* skin, ty_vec3 p, int line, near* out)
 typedef struct gathered
 {
     roots_sample sample;
-    float radius, depth, relief;
-    ty_vec3 axis;
+    float radius, depth, open, relief;
 } gathered;
 
 static gathered segment_gathered(const roots_skin* skin, int32_t number, ty_vec3 p)
@@ -148,14 +147,14 @@ static gathered segment_gathered(const roots_skin* skin, int32_t number, ty_vec3
     out.sample.at = t;
     out.radius = roots_segment_radius(s, t);
     out.depth = roots_segment_depth(s, t);
-    out.axis = ty_mad(s->a, s->d, t);
+    out.open = roots_segment_open(s, t);
     return out;
 }
 
 // The polynomial smooth minimum (Quilez).
 static void gather(const roots_skin* skin, gathered* all, gathered* one, const ty_vec3* bark)
 {
-    float k = roots_join_width(skin->recipe->join, all->radius, one->radius, all->axis, one->axis);
+    float k = roots_join_width(skin->recipe->join, all->radius, one->radius, all->open, one->open);
     float h = ty_clamp(0.5f + 0.5f * (all->sample.distance - one->sample.distance) / k, 0.0f, 1.0f);
     float mixed = 4.0f * h * (1.0f - h);
     if (bark && h > 0.0f)
@@ -168,7 +167,7 @@ static void gather(const roots_skin* skin, gathered* all, gathered* one, const t
     all->sample.distance = distance;
     all->radius = ty_lerp(all->radius, one->radius, h);
     all->depth = ty_lerp(all->depth, one->depth, h);
-    all->axis = ty_lerp3(all->axis, one->axis, h);
+    all->open = ty_lerp(all->open, one->open, h);
     all->relief = h > 0.0f ? ty_lerp(all->relief, one->relief, h) : all->relief;
 }
 

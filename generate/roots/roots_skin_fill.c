@@ -86,8 +86,7 @@ static range segment_range(const roots_segment* s, ty_vec3 middle, float half)
 
 typedef struct together
 {
-    float distance[NODES], radius[NODES], depth[NODES];
-    ty_vec3 axis[NODES];
+    float distance[NODES], radius[NODES], depth[NODES], open[NODES];
     bool any;
 } together;
 
@@ -97,21 +96,21 @@ static void together_take(const roots_skin* skin, together* all, const nearest* 
     {
         const roots_segment* s = &skin->segments[one->segment[i]];
         float r = roots_segment_radius(s, one->t[i]), d = one->distance[i], depth = roots_segment_depth(s, one->t[i]);
-        ty_vec3 axis = ty_mad(s->a, s->d, one->t[i]);
+        float open = roots_segment_open(s, one->t[i]);
         if (!all->any)
         {
             all->distance[i] = d;
             all->radius[i] = r;
             all->depth[i] = depth;
-            all->axis[i] = axis;
+            all->open[i] = open;
             continue;
         }
-        float k = roots_join_width(skin->recipe->join, all->radius[i], r, all->axis[i], axis);
+        float k = roots_join_width(skin->recipe->join, all->radius[i], r, all->open[i], open);
         float h = ty_clamp(0.5f + 0.5f * (all->distance[i] - d) / k, 0.0f, 1.0f);
         all->distance[i] = ty_lerp(all->distance[i], d, h) - k * h * (1.0f - h);
         all->radius[i] = ty_lerp(all->radius[i], r, h);
         all->depth[i] = ty_lerp(all->depth[i], depth, h);
-        all->axis[i] = ty_lerp3(all->axis[i], axis, h);
+        all->open[i] = ty_lerp(all->open[i], open, h);
     }
     all->any = true;
 }
