@@ -55,6 +55,8 @@ static void blocks_look(void* context, int64_t begin, int64_t end, int worker)
 
 // --- well-composed ---
 
+#define NECK 0.3f // steps, half the width of the thinnest strands
+
 typedef struct work
 {
     uint32_t* items; // slot * TY_NET_NODES + node: cells to be looked at
@@ -172,7 +174,7 @@ static void cell_mend(ty_net* net, work* w, uint32_t place)
             best = c;
     if (best < 0)
         return;
-    net->values[nodes[best]] = -1e-3f * net->def.step;
+    net->values[nodes[best]] = -NECK * net->def.step;
     for (int c = 0; c < 8; c++)
     {
         uint32_t cell;
@@ -181,6 +183,30 @@ static void cell_mend(ty_net* net, work* w, uint32_t place)
         if (node_find(net, low, &cell))
             work_add(w, cell);
     }
+}
+
+// Strands of single nodes get a width that has room for triangles with corners: without it nothing could mend them, as
+// they may be handles.
+static void strands_widen(ty_net* net)
+{
+    static const int around[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+    float thin = -NECK * net->def.step;
+    for (int slot = 0; slot < net->def.active_count; slot++)
+        for (uint32_t node = 0; net->crossed[slot] && node < TY_NET_NODES; node++)
+        {
+            uint32_t place = (uint32_t)slot * TY_NET_NODES + node, other;
+            int at[3], inside = 0;
+            if (net->values[place] >= 0.0f || net->values[place] <= thin)
+                continue;
+            node_coordinates(net, place, at);
+            for (int i = 0; i < 6; i++)
+            {
+                const int next[3] = {at[0] + around[i][0], at[1] + around[i][1], at[2] + around[i][2]};
+                inside |= (node_find(net, next, &other) && net->values[other] < 0.0f) << i;
+            }
+            if (inside == 3 || inside == 12 || inside == 48) // the two along an axis, and no other
+                net->values[place] = thin;
+        }
 }
 
 bool net_compose(ty_net* net, ty_workers* workers)
@@ -193,6 +219,7 @@ bool net_compose(ty_net* net, ty_workers* workers)
             work_add(&w, (uint32_t)slot * TY_NET_NODES + node);
     for (size_t i = 0; i < w.count && !w.failed; i++) // each mending adds a node to the inside, so that it ends
         cell_mend(net, &w, w.items[i]);
+    strands_widen(net);
     ty_free(w.items);
     ty_free(s.flawed);
     return !w.failed;

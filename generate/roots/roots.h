@@ -135,6 +135,8 @@ roots_sample roots_skin_at(const roots_skin* skin, ty_vec3 p);
 // The same with the direction of its gradient, unit (up where there is none), and the height of the bark over it, m, 0
 // far from all roots (NULL: not asked for).
 roots_sample roots_skin_look(const roots_skin* skin, ty_vec3 p, ty_vec3* normal, float* relief);
+// Moves p up to the depth under the host that its root may have. True where p lies near the host.
+bool roots_skin_keep(const roots_skin* skin, roots_sample sample, ty_vec3* p);
 // What the line holds there; segment is not -1.
 roots_point roots_skin_point(const roots_skin* skin, roots_sample sample);
 // uv of p on the surface of one segment's root, about the given place.

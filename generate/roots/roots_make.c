@@ -17,20 +17,6 @@ typedef struct dressing
     float *radius, *level, *join, *sink, *root, *along, *age;
 } dressing;
 
-// The field is an approximation: what lies near the host is held against the mesh itself.
-// True there.
-static bool depth_keep(const roots_host* host, const roots_point* own, ty_vec3* p)
-{
-    float most = own->sink * own->r;
-    ty_vec3 n;
-    if (roots_host_value(host, *p, NULL) > 2.0f * host->field.step - most)
-        return false;
-    float height = roots_host_exact(host, *p, most + 2.0f * host->field.step, &n);
-    if (height < -most)
-        *p = ty_mad(*p, n, -most - height);
-    return true;
-}
-
 // What stands out from the surface of roots, bark, turns normals by its slope: the mean of the gradients of what is
 // linear on the triangles about a vertex.
 static void normals_tilt(ty_mesh* mesh, const roots_sample* samples)
@@ -97,7 +83,7 @@ static void vertices_dress(void* context, int64_t begin, int64_t end, int worker
         ty_vec3 n;
         roots_sample sample = roots_skin_look(d->skin, *p, &n, NULL);
         roots_point own = roots_skin_point(d->skin, sample);
-        d->mesh->normals[v] = depth_keep(d->host, &own, p) ? (ty_vec3){0.0f, 0.0f, 0.0f} : n;
+        d->mesh->normals[v] = roots_skin_keep(d->skin, sample, p) ? (ty_vec3){0.0f, 0.0f, 0.0f} : n;
         d->mesh->uvs[v] = roots_skin_uv(d->skin, *p, sample);
         d->samples[v] = sample;
         d->radius[v] = own.r;

@@ -189,7 +189,7 @@ typedef struct raising
 } raising;
 
 // Between the grid's nodes the net knows the field in part: each vertex goes to the zero of the roots themselves, as
-// far as a part of a cell, and out by the relief of the bark.
+// far as a part of a cell, and out by the relief of the bark, and not too deep.
 static void vertices_raise(void* context, int64_t begin, int64_t end, int worker)
 {
     const raising* r = context;
@@ -200,7 +200,10 @@ static void vertices_raise(void* context, int64_t begin, int64_t end, int worker
         ty_vec3 *p = &r->mesh->positions[v], n;
         float relief;
         roots_sample sample = roots_skin_look(r->skin, *p, &n, &relief);
+        if (sample.segment < 0)
+            continue;
         *p = ty_mad(*p, n, relief - ty_clamp(sample.distance, -most, most));
+        roots_skin_keep(r->skin, sample, p);
     }
 }
 

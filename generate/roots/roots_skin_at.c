@@ -236,6 +236,22 @@ roots_sample roots_skin_look(const roots_skin* skin, ty_vec3 p, ty_vec3* directi
     return all.sample;
 }
 
+// The field is an approximation: what lies near the host is held against the mesh itself.
+bool roots_skin_keep(const roots_skin* skin, roots_sample sample, ty_vec3* p)
+{
+    if (!skin->host)
+        return false;
+    roots_point own = roots_skin_point(skin, sample);
+    float most = own.sink * own.r, step = skin->host->field.step;
+    ty_vec3 n;
+    if (roots_host_value(skin->host, *p, NULL) > 2.0f * step - most)
+        return false;
+    float height = roots_host_exact(skin->host, *p, most + 2.0f * step, &n);
+    if (height < -most)
+        *p = ty_mad(*p, n, -most - height);
+    return true;
+}
+
 // --- what stands there ---
 
 roots_point roots_skin_point(const roots_skin* skin, roots_sample sample)

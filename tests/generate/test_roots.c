@@ -183,6 +183,38 @@ static void hosts_come_from_files_too(void** state)
     assert_int_equal(ty_roots_make(&recipe, NULL, &by_file, &error), TY_BAD_INPUT);
 }
 
+// Where thick roots overlap far from the host their surface has no step: no two triangles meet at more than 60 degrees
+// but at the cut of the top.
+static void thick_roots_run_together_smoothly(void** state)
+{
+    (void)state;
+    ty_roots_recipe recipe = coarse();
+    recipe.count = 6;
+    recipe.radius = 12e-3f;
+    recipe.trunk.height = 0.12f;
+    recipe.join = 2.0f;
+    recipe.bark = 0.0f;
+    recipe.tip = recipe.detail = 1.5e-3f;
+    recipe.first.spacing = 0.0f;
+    ty_mesh* mesh = make(&recipe, NULL);
+    ty_vec3* normals = TY_ALLOC(ty_vec3, mesh->vertex_count);
+    for (int pass = 0; pass < 2; pass++)
+        for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        {
+            const uint32_t* c = mesh->triangles[t];
+            ty_vec3 p = mesh->positions[c[0]];
+            ty_vec3 n = ty_cross(ty_sub(mesh->positions[c[1]], p), ty_sub(mesh->positions[c[2]], p));
+            bool trunk = p.y > RADIUS + 0.03f && p.y < mesh->bounds.high.y - 4e-3f;
+            for (int k = 0; k < 3; k++)
+                if (pass == 0)
+                    normals[mesh->welds[c[k]]] = ty_add(normals[mesh->welds[c[k]]], n);
+                else if (trunk)
+                    assert_true(ty_dot(ty_normalize(n), ty_normalize(normals[mesh->welds[c[k]]])) > 0.8f);
+        }
+    ty_free(normals);
+    ty_mesh_destroy(mesh);
+}
+
 static void workers_change_no_bit(void** state)
 {
     (void)state;
@@ -260,10 +292,11 @@ static void memory_may_end_anywhere(void** state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_surface_is_closed),       cmocka_unit_test(a_free_root_has_its_volume),
-        cmocka_unit_test(roots_hold_on_to_the_host),   cmocka_unit_test(roots_taper_and_branch),
-        cmocka_unit_test(hosts_come_from_files_too),   cmocka_unit_test(workers_change_no_bit),
-        cmocka_unit_test(impossible_ones_are_refused), cmocka_unit_test(memory_may_end_anywhere),
+        cmocka_unit_test(the_surface_is_closed),     cmocka_unit_test(a_free_root_has_its_volume),
+        cmocka_unit_test(roots_hold_on_to_the_host), cmocka_unit_test(roots_taper_and_branch),
+        cmocka_unit_test(hosts_come_from_files_too), cmocka_unit_test(thick_roots_run_together_smoothly),
+        cmocka_unit_test(workers_change_no_bit),     cmocka_unit_test(impossible_ones_are_refused),
+        cmocka_unit_test(memory_may_end_anywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
