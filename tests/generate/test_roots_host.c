@@ -155,7 +155,7 @@ static void sheets_are_held_on_either_side(void** state)
 static void objects_stand_where_they_are_put(void** state)
 {
     (void)state;
-    ty_roots_object_def objects[2] = {{.kind = TY_ROOTS_HOST_BOX, .shape = ty_shape_def_default()},
+    ty_roots_object_def objects[3] = {{.kind = TY_ROOTS_HOST_BOX, .shape = ty_shape_def_default()},
                                       {.kind = TY_ROOTS_HOST_SPHERE, .shape = ty_shape_def_default()}};
     objects[0].shape.size = ty_vec3_make(0.03f, 0.01f, 0.01f);
     objects[0].rotate.z = ty_radians(90.0f); // it stands up
@@ -163,13 +163,16 @@ static void objects_stand_where_they_are_put(void** state)
     objects[1].shape.radius = 0.01f;
     objects[1].translate.y = 0.035f;
     objects[1].scale = ty_vec3_make(2.0f, 2.0f, 2.0f);
+    objects[2] = objects[0];
+    objects[2].translate.z = 0.1f;
     ty_roots_recipe recipe = recipe_of(TY_ROOTS_HOST_SPHERE);
-    recipe.host.objects = (ty_param_list){objects, 2};
+    recipe.host.objects = (ty_param_list){objects, 3};
     roots_host host = host_of(&recipe);
     ty_vec3 n;
     assert_float_equal(roots_host_exact(&host, ty_vec3_make(0.0f, -0.033f, 0.0f), 0.01f, &n), 0.003f, 1e-6f);
     assert_float_equal(roots_host_exact(&host, ty_vec3_make(0.0f, 0.06f, 0.0f), 0.01f, &n), 0.005f, 2e-4f);
     assert_true(roots_host_value(&host, ty_vec3_make(0.0f, 0.025f, 0.0f), NULL) < 0.0f); // in both
+    assert_float_equal(roots_host_exact(&host, ty_vec3_make(0.0f, 0.033f, 0.1f), 0.01f, &n), 0.003f, 1e-6f);
     roots_host_term(&host);
     objects[1].scale.y = 0.0f;
     refused(&recipe, "host.objects[1].scale: [2, 0, 2]");
@@ -284,12 +287,12 @@ static void starts_are_given_or_painted(void** state)
     assert_int_equal(roots_host_starts(&host, &recipe, 8, &starts, &count, &error), TY_BAD_INPUT);
     assert_non_null(strstr(error.text, "start.attribute: 'nothing'"));
     recipe.start.attribute = NULL;
-    points[1].x = 0.2f;
+    points[1].x = 0.06f;
     assert_int_equal(roots_host_starts(&host, &recipe, 8, &starts, &count, &error), TY_BAD_INPUT);
-    assert_non_null(strstr(error.text, "start.points[1]: [0.2, 0, 0] is 0.16 m from the host; at most 0.008"));
-    points[1].x = 0.01f;
+    assert_non_null(strstr(error.text, "start.points[1]: [0.06, 0, 0] is 0.02 m from the host; at most 0.008"));
+    points[1].x = 0.034f;
     assert_int_equal(roots_host_starts(&host, &recipe, 8, &starts, &count, &error), TY_BAD_INPUT);
-    assert_non_null(strstr(error.text, "inside of the host, 0.03 m deep; at most 0.0042"));
+    assert_non_null(strstr(error.text, "inside of the host, 0.00599 m deep; at most 0.0042"));
     assert_true(count == 0 && !starts);
     roots_host_term(&host);
 }
