@@ -9,6 +9,8 @@ typedef struct growth
     const roots_host* host;
     ty_workers* workers;
     roots_network* network;
+    roots_start* starts; // of main roots, in place of the trunk
+    int start_count;
 } growth;
 
 // The part of v across a unit vector.
@@ -23,15 +25,27 @@ static inline float growth_height(const roots_point* p)
     return (p->flat - p->sink) * p->r;
 }
 
-// Puts what lies on the host at its height over the mesh itself: all lines from the first on, but for ends on others.
-void growth_settle(const growth* g, int first);
+// Puts what lies on the host at its height over the mesh itself (or, for the time being, by the field): all lines from
+// the first on. Turns of more than 40 degrees are rounded off. Ends on other lines go where those are, and what is near
+// them goes along.
+void growth_settle(const growth* g, int first, bool exact);
+void growth_settle_line(const growth* g, int line, bool exact); // one alone
+// Main roots bend away from what leaves them, on the first half dozen radii after it: for all lines from the first on.
+void growth_part(const growth* g, int first);
+// Radii by the pipe model, r^n = sum of those after it: what leaves takes away, what comes in gives back.
+void growth_pipe(const growth* g);
+// When the tip passes each point.
+void growth_births(roots_network* network);
 // The direction of a line at a point, unit.
 ty_vec3 growth_tangent(const roots_network* network, const roots_line* line, int point);
 
-// Main roots, and those that hang. false: cancelled.
+// Main roots, then those that hang from them. false: cancelled.
 bool growth_main(growth* g);
+bool growth_aerial(growth* g);
 // Branches between lines of one kind, by the recipe's `link`; they become lines of the other. false: cancelled.
 bool growth_link(growth* g, const ty_roots_link_def* link, roots_kind from, roots_kind to);
+// Fine roots over what is left, by the recipe's `cover`. false: cancelled.
+bool growth_cover(growth* g);
 
 // --- shrink-wrap ---
 
@@ -46,6 +60,7 @@ typedef struct wrap_def
     ty_vec3 ta, tb;      // directions of the roots there
     float r, flat, sink; // its own
     float wander;        // of the way across
+    bool strict;         // no kinks, and ends that go along the roots they join
     uint64_t key;
 } wrap_def;
 
@@ -56,6 +71,16 @@ typedef struct wrap
     float length; // m
 } wrap;
 
-// A curve from a to b that lies on the host: drawn tight from far outside of it. false: there is none, it would be too
-// long, or it kinks.
-bool roots_wrap(const growth* g, const wrap_def* def, wrap* out);
+typedef enum wrap_way
+{
+    WRAP_NONE,     // there is none, it would be too long, or it kinks
+    WRAP_TIGHT,    // drawn tight from far outside of the host
+    WRAP_GEODESIC, // the shortest way over nodes near the surface, smoothed
+    WRAP_WAYS,
+} wrap_way;
+
+// A curve from a to b that lies on the host.
+wrap_way roots_wrap(const growth* g, const wrap_def* def, wrap* out);
+// A way from a to b over nodes of a grid near the surface, at most `longest` (m), by A*: up to `most` points, their
+// number, 0 where there is none.
+int roots_geodesic(const roots_host* host, ty_vec3 a, ty_vec3 b, float height, float longest, ty_vec3* out, int most);

@@ -41,13 +41,15 @@ static void evened(ty_vec3* p, int count)
     memcpy(p, even, (size_t)count * sizeof(ty_vec3));
 }
 
-static void smooth(ty_vec3* p, int count, float part)
+// Towards the middle of the neighbours; less near the ends, over `stiff` points, so that their directions stay.
+static void smooth(ty_vec3* p, int count, float part, float stiff)
 {
     ty_vec3 last = p[0];
     for (int i = 1; i + 1 < count; i++)
     {
         ty_vec3 own = p[i], middle = ty_mul(ty_add(last, p[i + 1]), 0.5f);
-        p[i] = ty_lerp3(own, middle, part);
+        float end = (float)(i < count - 1 - i ? i : count - 1 - i);
+        p[i] = ty_lerp3(own, middle, part * ty_min(1.0f, end / stiff));
         last = own;
     }
 }
@@ -92,16 +94,17 @@ static void begin(const wrap_def* def, wrap* w, float lift)
     }
 }
 
-// Leaves along the root it comes from and arrives along the one it goes to: near the ends it is pulled that way.
-static void ends_bend(const wrap_def* def, wrap* w, float length)
+// Leaves along the root it comes from and arrives along the one it goes to: near the ends, over some radii, it is
+// pulled that way.
+static void ends_bend(const wrap_def* def, wrap* w, float length, float radii, float pull)
 {
+    float reach_a = ty_min(radii * def->a.r, 0.3f * length), reach_b = ty_min(radii * def->b.r, 0.3f * length);
     for (int i = 1; i + 1 < w->count; i++)
     {
         float t = (float)i / (float)(w->count - 1);
-        float reach_a = ty_min(5.0f * def->a.r, 0.3f * length), reach_b = ty_min(5.0f * def->b.r, 0.3f * length);
         float x = t * length / reach_a, y = (1.0f - t) * length / reach_b;
-        w->p[i] = ty_mad(w->p[i], def->ta, 0.45f * reach_a * x * ty_exp(1.0f - x - 0.5f * x * x));
-        w->p[i] = ty_mad(w->p[i], def->tb, -0.45f * reach_b * y * ty_exp(1.0f - y - 0.5f * y * y));
+        w->p[i] = ty_mad(w->p[i], def->ta, pull * reach_a * x * ty_exp(1.0f - x - 0.5f * x * x));
+        w->p[i] = ty_mad(w->p[i], def->tb, -pull * reach_b * y * ty_exp(1.0f - y - 0.5f * y * y));
     }
 }
 
@@ -120,19 +123,30 @@ static void swing(const wrap_def* def, wrap* w, float length)
     }
 }
 
-// The cosine of the sharpest turn, and whether all lies where it should.
-static bool is_good(const growth* g, const wrap_def* def, const wrap* w)
+// The cosine of the sharpest turn.
+static float sharpest(const wrap* w)
 {
     float turn = 1.0f;
     for (int i = 1; i + 1 < w->count; i++)
     {
         ty_vec3 a = ty_normalize(ty_sub(w->p[i], w->p[i - 1])), b = ty_normalize(ty_sub(w->p[i + 1], w->p[i]));
         turn = ty_min(turn, ty_dot(a, b));
+    }
+    return turn;
+}
+
+static bool lies_well(const growth* g, const wrap_def* def, const wrap* w)
+{
+    for (int i = 1; i + 1 < w->count; i++)
+    {
         float t = (float)i / (float)(w->count - 1), height = height_at(def, t, w->length);
-        if (fabsf(roots_host_value(g->host, w->p[i], NULL) - height) > 0.5f * def->r + 0.5f * g->host->field.step)
+        float over = roots_host_value(g->host, w->p[i], NULL) - height, most = 0.5f * (def->r + g->host->field.step);
+        if (roots_host_clear(g->host, w->p[i], NULL) < g->recipe->growth.clear * def->r)
+            return false;
+        if (over < -most || over > 3.0f * most) // in corners it hangs over; it comes to rest later
             return false;
     }
-    return turn > 0.5f; // 60 degrees
+    return true;
 }
 
 static void refine(const wrap_def* def, wrap* w)
@@ -145,37 +159,86 @@ static void refine(const wrap_def* def, wrap* w)
     w->count = wanted;
 }
 
-bool roots_wrap(const growth* g, const wrap_def* def, wrap* w)
+static bool tighten(const growth* g, const wrap_def* def, wrap* w, float chord)
 {
-    float chord = ty_length(ty_sub(def->b.p, def->a.p)), lift = LIFT * chord;
+    float lift = LIFT * chord;
     begin(def, w, lift);
     for (int i = 0; i <= TIGHTEN; i++)
     {
         float left = ty_sqr(1.0f - (float)i / TIGHTEN);
-        smooth(w->p, w->count, 0.7f);
-        smooth(w->p, w->count, 0.7f);
+        smooth(w->p, w->count, 0.7f, 1.0f);
+        smooth(w->p, w->count, 0.7f, 1.0f);
         project(g, def, w, lift * left);
         if (i % 4 == 3)
             evened(w->p, w->count);
     }
+    return length_of(w->p, w->count) <= MOST_WAY * chord;
+}
+
+// Gives the ends the directions that smoothing has taken from them, as far as there is room for it.
+static void ends_align(const growth* g, const wrap_def* def, wrap* w)
+{
+    ty_vec3 was[WRAP_MOST];
+    float pull = 1.0f;
+    memcpy(was, w->p, (size_t)w->count * sizeof(ty_vec3));
+    for (int i = 0; i < 4; i++, pull *= 0.7f)
+    {
+        memcpy(w->p, was, (size_t)w->count * sizeof(ty_vec3));
+        ends_bend(def, w, w->length, 2.5f, pull);
+        project(g, def, w, 0.0f);
+        if (sharpest(w) > 0.6f)
+            break;
+    }
+}
+
+static float end_dot(const wrap* w, int from, int to, ty_vec3 t)
+{
+    return ty_dot(ty_normalize(ty_sub(w->p[to], w->p[from])), t);
+}
+
+// At full resolution, swung to the sides, its ends along the roots that it joins.
+static bool finish(const growth* g, const wrap_def* def, wrap* w, float swung, float longest)
+{
     float length = length_of(w->p, w->count);
-    if (length > MOST_WAY * chord)
-        return false;
     refine(def, w);
     project(g, def, w, 0.0f);
-    swing(def, w, length);
-    ends_bend(def, w, length);
-    for (int i = 0; i < 4 * SMOOTH; i++)
+    if (swung > 0.0f)
+        swing(def, w, swung * length);
+    ends_bend(def, w, length, 5.0f, 0.45f);
+    for (int i = 0; i < 5 * SMOOTH; i++)
     {
-        smooth(w->p, w->count, 0.5f);
+        smooth(w->p, w->count, 0.5f, 6.0f);
         project(g, def, w, 0.0f);
         if (i % 4 == 3)
             evened(w->p, w->count);
         w->length = length_of(w->p, w->count);
-        if (i >= SMOOTH && is_good(g, def, w))
+        if (i >= SMOOTH && sharpest(w) > 0.5f && lies_well(g, def, w))
             break;
     }
+    ends_align(g, def, w);
+    w->length = length_of(w->p, w->count);
     w->n[0] = def->a.n;
     w->n[w->count - 1] = def->b.n;
-    return w->length <= MOST_WAY * chord && is_good(g, def, w);
+    bool ends = end_dot(w, 0, 1, def->ta) > 0.6f && end_dot(w, w->count - 2, w->count - 1, def->tb) > 0.6f;
+    if (def->strict && (!ends || sharpest(w) < 0.4f))
+        return false;
+    return w->length <= longest && sharpest(w) > 0.0f && lies_well(g, def, w); // turns are rounded off later
+}
+
+wrap_way roots_wrap(const growth* g, const wrap_def* def, wrap* w)
+{
+    float chord = ty_length(ty_sub(def->b.p, def->a.p)), height = (def->flat - def->sink) * def->r;
+    if (tighten(g, def, w, chord) && finish(g, def, w, 1.0f, MOST_WAY * chord))
+        return WRAP_TIGHT;
+    w->count = roots_geodesic(g->host, def->a.p, def->b.p, height, MOST_WAY * chord, w->p, WRAP_MOST);
+    if (w->count < 3)
+        return WRAP_NONE;
+    for (int i = 0; i < SMOOTH; i++)
+    {
+        evened(w->p, w->count);
+        smooth(w->p, w->count, 0.7f, 1.0f);
+        smooth(w->p, w->count, 0.7f, 1.0f);
+        project(g, def, w, 0.0f);
+    }
+    return finish(g, def, w, 0.3f, MOST_WAY * chord) ? WRAP_GEODESIC : WRAP_NONE;
 }

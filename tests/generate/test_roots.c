@@ -116,7 +116,8 @@ static void roots_hold_on_to_the_host(void** state)
         beside += height < 3.0f * radius[v];
         floor += p.y < -RADIUS + 2.0f * radius[v];
         float depth = (recipe.growth.sink + 0.5f) * radius[v]; // where they run together they bulge downwards too
-        assert_true(height > -depth && p.y > -RADIUS - depth);
+        assert_true(height > -depth);
+        assert_true(p.y > -RADIUS - 1.5f * radius[v]); // on the table they end by going under
     }
     assert_true(under > (int)mesh->vertex_count / 20); // they are sunk into it,
     assert_true(beside > (int)mesh->vertex_count / 3); // most of them keep near,
