@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `bark`: layers of noise about a root and along it, their colour and their relief.
 #include "bark.h"
+#include "curvature_at.h"
 #include "material_private.h"
 #include <tsuya/base/noise.h>
 
@@ -50,20 +51,32 @@ static void place_move(ty_bark_place* place, const ty_bark_def* def, float radiu
     place->root = ty_mul(ty_vec3_make(radius * cosine, radius * sine, uv.y), 1.0f / def->size);
 }
 
+// From the world to the object's space, in which patterns are as large as the scene says, however large the instance
+// is.
+static ty_affine local_of(const ty_shading_context* context, const ty_surface_point* point)
+{
+    if (!context || !context->world)
+        return ty_affine_identity();
+    ty_affine world = ty_world_to_world(context->world, point->object, point->instance, point->time);
+    ty_affine local = ty_world_to_local(context->world, point->object, point->instance, point->time);
+    float scale = ty_instance_scale(&world);
+    local.x = ty_mul(local.x, scale);
+    local.y = ty_mul(local.y, scale);
+    local.z = ty_mul(local.z, scale);
+    local.t = ty_mul(local.t, scale);
+    return local;
+}
+
 ty_bark_place ty_bark_place_at(const ty_bark_def* def, const ty_shading_context* context, const ty_surface_point* point)
 {
     ty_bark_place place;
-    ty_vec3 local = point->position;
-    if (context && context->world)
-    {
-        ty_affine inverse = ty_world_to_local(context->world, point->object, point->instance, point->time);
-        local = ty_map_point(&inverse, local);
-    }
+    ty_affine local = local_of(context, point);
     place.join = ty_unit_input(&def->join, context, point);
     place.age = ty_unit_input(&def->age, context, point);
     float wide = ty_max(ty_length_sqr(point->footprint[0]), ty_length_sqr(point->footprint[1]));
     place.seen = 2.0f * sqrtf(wide) / def->size;
-    place_move(&place, def, ty_max(ty_input_float(&def->radius, context, point), 0.0f), local, point->uv);
+    place_move(&place, def, ty_max(ty_input_float(&def->radius, context, point), 0.0f),
+               ty_map_point(&local, point->position), point->uv);
     return place;
 }
 
@@ -170,9 +183,7 @@ ty_vec3 ty_bark_normal(const ty_bark_def* def, const ty_shading_context* context
     ty_vec3 n = frame->n, along[2];
     bool mapped = context && context->world && ty_world_tangents(context->world, point, &along[0], &along[1]);
     float radius = ty_max(ty_input_float(&def->radius, context, point), 0.0f);
-    ty_affine inverse = ty_affine_identity();
-    if (context && context->world)
-        inverse = ty_world_to_local(context->world, point->object, point->instance, point->time);
+    ty_affine local = local_of(context, point);
     for (int i = 0; i < 3; i++)
     {
         ty_vec2 uv = point->uv;
@@ -183,7 +194,7 @@ ty_vec3 ty_bark_normal(const ty_bark_def* def, const ty_shading_context* context
             uv.x += ty_dot(ty_cross(d[i], along[1]), across) / area;
             uv.y += ty_dot(ty_cross(along[0], d[i]), across) / area;
         }
-        place_move(&here, def, radius, ty_map_point(&inverse, ty_add(point->position, d[i])), uv);
+        place_move(&here, def, radius, ty_map_point(&local, ty_add(point->position, d[i])), uv);
         ty_bark_layers l = ty_bark_layers_at(&here);
         height[i] = def->depth * ty_bark_height(def, &l, here.age);
     }

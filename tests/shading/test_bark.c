@@ -140,6 +140,37 @@ static void test_distance(void** state)
     assert_near(from_afar.g, from_near.g, 0.012);
 }
 
+// Patterns are as large on an instance that is scaled as on a mesh of that size.
+static void test_scaled_instances(void** state)
+{
+    (void)state;
+    stage s[2];
+    ty_shape_def shape = shape_of(TY_SHAPE_SPHERE, 5e-3f, 0, 0);
+    ty_affine twice = {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {0, 0, 0}};
+    stage_init(&s[0], &shape, &twice, 1);
+    shape.radius = 10e-3f;
+    stage_init_one(&s[1], &shape);
+    ty_bark_def d = ty_bark_def_default();
+    d.depth = 0.0f;
+    d.join = ty_input_scalar(1);
+    ty_material* m = bark(&d);
+    for (int k = 0; k < 40; k++)
+    {
+        ty_rgb color[2];
+        for (int i = 0; i < 2; i++)
+        {
+            ty_bsdf b;
+            ty_surface_point p = seen(&s[i], ty_vec3_make(2e-4f * (float)k, 1e-4f, 1), ty_vec3_make(0, 0, -1));
+            ty_material_prepare(m, &s[i].context, &p, p.ng, &b);
+            color[i] = b.color;
+        }
+        assert_near(color[0].g, color[1].g, 2e-3);
+    }
+    ty_material_destroy(m);
+    stage_term(&s[0]);
+    stage_term(&s[1]);
+}
+
 // The normal leans by the slope of the relief: twice the depth, twice the slope; none without.
 static void test_relief(void** state)
 {
@@ -186,7 +217,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_white_furnace), cmocka_unit_test(test_no_seams), cmocka_unit_test(test_age_water_lichen),
-        cmocka_unit_test(test_distance),      cmocka_unit_test(test_relief),   cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_distance),      cmocka_unit_test(test_relief),   cmocka_unit_test(test_scaled_instances),
+        cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
