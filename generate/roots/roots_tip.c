@@ -266,7 +266,7 @@ static void tip_step(march* m, int index)
 
 // --- ends ---
 
-// A root that stops at its longest still ends in a tip; on the ground it goes under.
+// A root that stops at its longest still ends in a tip; on the ground it sinks in.
 static void end_taper(const march* m, tip* t)
 {
     roots_point* last = &t->points[t->count - 1];
@@ -280,7 +280,7 @@ static void end_taper(const march* m, tip* t)
         float deep = ty_smoothstep(ty_clamp(1.0f - (end - p->s) / under, 0.0f, 1.0f));
         p->r = ty_max(ty_min(p->r, thinnest), p->r * sqrtf(left));
         if (lies && p->sink > 0.0f)
-            p->sink = ty_lerp(p->sink, 1.8f * p->flat, deep);
+            p->sink = ty_lerp(p->sink, ty_max(p->sink, 0.55f), deep);
     }
 }
 
