@@ -25,8 +25,6 @@ ty_status ty_scene_cache_folder(const char* given, char* out, ty_error* error)
     return ty_folder_create(out, error);
 }
 
-#define FRAME_NAME "frame.####.exr"
-
 typedef struct entry
 {
     char path[TY_PATH_MAX];    // the file, or the folder of frames
@@ -35,11 +33,26 @@ typedef struct entry
     char key[33];
 } entry;
 
+static const char* frame_name(const ty_asset* asset)
+{
+    return asset->recipe.generator->product == TY_PRODUCT_MESH ? "frame.####.ply" : "frame.####.exr";
+}
+
+static ty_status read_mesh_hash(const char* path, char hash[33], ty_error* error)
+{
+    ty_mesh* mesh = NULL;
+    ty_status status = ty_mesh_read_frame(path, &mesh, error);
+    if (status == TY_OK && mesh->hash)
+        snprintf(hash, 33, "%s", mesh->hash);
+    ty_mesh_destroy(mesh);
+    return status;
+}
+
 // Every frame is there, and the first is of this recipe.
 static ty_status read_frames(const ty_asset* asset, const entry* e, char hash[33], ty_error* error)
 {
     char path[TY_PATH_MAX];
-    int count = asset->recipe.generator->frame_count(asset->recipe.def);
+    int count = ty_recipe_frames(&asset->recipe);
     for (int frame = 1; frame <= count; ++frame)
     {
         ty_path_frame(e->pattern, frame, path);
@@ -48,6 +61,8 @@ static ty_status read_frames(const ty_asset* asset, const entry* e, char hash[33
     }
     ty_exr* exr = NULL;
     ty_path_frame(e->pattern, 1, path);
+    if (asset->recipe.generator->product == TY_PRODUCT_MESH)
+        return read_mesh_hash(path, hash, error);
     ty_status status = ty_exr_read(path, &exr, error);
     const ty_exr_attribute* attribute = exr ? ty_exr_find_attribute(exr, "tsuya/hash") : NULL;
     if (attribute && attribute->text)
@@ -69,7 +84,8 @@ static ty_status read_made(ty_asset* asset, const entry* e, ty_error* error)
     char hash[33] = "";
     const char* claim = hash;
     ty_status status;
-    switch (asset->recipe.generator->product)
+    bool frames = ty_recipe_frames(&asset->recipe) > 0;
+    switch (frames ? TY_PRODUCT_FRAMES : asset->recipe.generator->product)
     {
     case TY_PRODUCT_AGGREGATE:
         status = ty_aggregate_read(e->path, NULL, &asset->aggregate, error);
@@ -108,7 +124,7 @@ static ty_status make_frames(const ty_asset* asset, const entry* e, ty_workers* 
     ty_status status = ty_atomic_folder_begin(&folder, e->path, error);
     if (status != TY_OK)
         return status;
-    ty_path_join(folder.temporary, FRAME_NAME, pattern);
+    ty_path_join(folder.temporary, frame_name(asset), pattern);
     status = ty_recipe_write(&asset->recipe, e->key, pattern, workers, error);
     if (status == TY_OK)
         return ty_atomic_folder_commit(&folder, error);
@@ -118,7 +134,7 @@ static ty_status make_frames(const ty_asset* asset, const entry* e, ty_workers* 
 
 static ty_status make(const ty_asset* asset, const entry* e, ty_workers* workers, ty_error* error)
 {
-    if (asset->recipe.generator->product == TY_PRODUCT_FRAMES)
+    if (ty_recipe_frames(&asset->recipe) > 0)
         return make_frames(asset, e, workers, error);
     ty_status status = ty_recipe_write(&asset->recipe, e->key, e->path, workers, error);
     if (status != TY_NOT_AT_REST)
@@ -129,7 +145,7 @@ static ty_status make(const ty_asset* asset, const entry* e, ty_workers* workers
 
 // Where an asset goes. A cache that cannot be written costs time, not the picture: then it lives in a folder of its
 // own.
-static ty_status entry_place(const ty_scene_options* options, ty_product product, entry* e, ty_error* error)
+static ty_status entry_place(const ty_scene_options* options, const ty_asset* asset, entry* e, ty_error* error)
 {
     static const char* const extensions[] = {"glb", "ply", "frames"};
     char folder[TY_PATH_MAX], file[64];
@@ -142,9 +158,10 @@ static ty_status entry_place(const ty_scene_options* options, ty_product product
         ty_log(TY_LOG_WARNING, "made assets cannot be kept (%s)", reason.text[0] ? reason.text : "read-only folder");
         snprintf(folder, sizeof(folder), "%s", e->passing);
     }
-    snprintf(file, sizeof(file), "%s.%s", e->key, extensions[product]);
+    snprintf(file, sizeof(file), "%s.%s", e->key,
+             extensions[ty_recipe_frames(&asset->recipe) > 0 ? TY_PRODUCT_FRAMES : asset->recipe.generator->product]);
     ty_path_join(folder, file, e->path);
-    ty_path_join(e->path, FRAME_NAME, e->pattern);
+    ty_path_join(e->path, frame_name(asset), e->pattern);
     return TY_OK;
 }
 
@@ -154,7 +171,7 @@ static void pass(ty_loader* loader, const ty_asset* asset, const entry* e, ty_st
     struct ty_scene_resources* resources = loader->scene->resources;
     if (!e->passing[0])
         return;
-    if (status == TY_OK && asset->recipe.generator->product == TY_PRODUCT_FRAMES)
+    if (status == TY_OK && ty_recipe_frames(&asset->recipe) > 0)
     {
         resources->passing[resources->passing_count++] = ty_arena_string(loader->arena, e->path);
         return;
@@ -169,10 +186,10 @@ static void log_asset(const ty_asset* asset, const entry* e, bool made, double s
     const ty_generator* generator = asset->recipe.generator;
     if (generator->product == TY_PRODUCT_AGGREGATE)
         snprintf(what, sizeof(what), "%u instances", asset->aggregate->instance_count);
-    else if (generator->product == TY_PRODUCT_MESH)
+    else if (ty_recipe_frames(&asset->recipe) == 0)
         snprintf(what, sizeof(what), "%u triangles", asset->mesh->triangle_count);
     else
-        snprintf(what, sizeof(what), "%d frames", generator->frame_count(asset->recipe.def));
+        snprintf(what, sizeof(what), "%d frames", ty_recipe_frames(&asset->recipe));
     if (made)
         ty_log(TY_LOG_INFO, "asset '%s': %s made, %.1f s (%s%s)", asset->name, what, ty_time_now() - start,
                e->passing[0] ? "not kept" : "kept as ", e->passing[0] ? "" : e->path);
@@ -186,7 +203,7 @@ ty_status ty_asset_cache_get(ty_loader* loader, ty_asset* asset, ty_error* error
     double start = ty_time_now();
     ty_status status = ty_recipe_key(&asset->recipe, &loader->files, e.key, error);
     if (status == TY_OK)
-        status = entry_place(loader->options, asset->recipe.generator->product, &e, error);
+        status = entry_place(loader->options, asset, &e, error);
     if (status != TY_OK)
         return status;
     bool cached = read_cached(asset, &e);

@@ -158,6 +158,8 @@ static void load_recipe(ty_loader* loader, ty_asset* asset)
         return;
     if (ty_asset_cache_get(loader, asset, &error) == TY_OK)
     {
+        if (asset->sequence)
+            ty_mesh_sequence_load(loader, asset);
         if (asset->aggregate)
             keep_aggregate(loader, asset->aggregate);
         if (asset->mesh)

@@ -186,6 +186,8 @@ void ty_override_check_defines(ty_loader* loader);
 const char* ty_override_text(ty_arena* arena, const ty_scene_options* options); // as given, in one line
 
 // recipe.c
+// Of what is made as frames, pictures or meshes that grow; 0 = it is one file.
+int ty_recipe_frames(const ty_recipe* recipe);
 bool ty_recipe_is_file(const ty_node* node); // a scalar that names .yaml, .yml or .json
 // The file's mapping in place of its name; what: "recipe" or "calibration", for messages.
 void ty_recipe_inline(ty_loader* loader, ty_node** slot, const char* what);
@@ -272,6 +274,8 @@ void ty_check_keys_cover(ty_loader* loader); // named frames alone
 bool ty_sequence_find_files(ty_loader* loader, const char* pattern, const ty_sequence_def* def, const char* what,
                             ty_place place, int* first, int* count);
 void ty_mesh_sequence_read(ty_loader* loader, ty_asset* asset, const ty_mesh_asset_def* def, ty_node* pattern);
+// Of a recipe that grows; the files come when it is made.
+void ty_mesh_sequence_expect(ty_loader* loader, ty_asset* asset, const ty_mesh_asset_def* def);
 void ty_mesh_sequence_load(ty_loader* loader, ty_asset* asset); // the mesh at the scene's seconds
 void ty_mesh_sequence_destroy(struct ty_mesh_sequence* sequence);
 void ty_set_mesh_times(ty_loader* loader); // to the scene's seconds; what changed is marked

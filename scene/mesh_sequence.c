@@ -60,6 +60,26 @@ void ty_mesh_sequence_read(ty_loader* loader, ty_asset* asset, const ty_mesh_ass
     asset->sequence = resources->sequences[resources->sequence_count++] = s;
 }
 
+void ty_mesh_sequence_expect(ty_loader* loader, ty_asset* asset, const ty_mesh_asset_def* def)
+{
+    struct ty_scene_resources* resources = loader->scene->resources;
+    ty_sequence_check(loader, &def->sequence, asset->place);
+    ty_mesh_sequence* s = TY_ARENA_ALLOC(loader->arena, ty_mesh_sequence, 1);
+    *s = (ty_mesh_sequence){
+        .timing = ty_sequence_timing(&def->sequence), .first = 1, .loaded = {-1, -1}, .shown = {-1, -1}};
+    int most = s->count = ty_recipe_frames(&asset->recipe);
+    if (def->sequence.last_frame >= def->sequence.first_frame)
+    {
+        s->first = def->sequence.first_frame;
+        s->count = def->sequence.last_frame - s->first + 1;
+    }
+    if (s->first < 1 || s->first + s->count - 1 > most)
+        ty_report(loader->errors, asset->place, TY_BAD_INPUT, "mesh: frames %d to %d; the recipe makes 1 to %d",
+                  s->first, s->first + s->count - 1, most);
+    ty_check_sequence_covers(loader, &s->timing, s->count, asset->place);
+    asset->sequence = resources->sequences[resources->sequence_count++] = s;
+}
+
 void ty_mesh_sequence_destroy(ty_mesh_sequence* sequence)
 {
     ty_mesh_destroy(sequence->frames[0]);
@@ -236,6 +256,8 @@ static void check_files(ty_loader* loader, const ty_asset* asset)
 
 void ty_mesh_sequence_load(ty_loader* loader, ty_asset* asset)
 {
+    if (asset->frames) // of a recipe
+        asset->sequence->pattern = asset->frames;
     (void)show(loader, asset); // what is wrong is in the list of errors
     asset->sequence->changed = false;
     if (loader->options->check_only)

@@ -27,6 +27,13 @@ bool ty_recipe_belongs(const ty_generator* generator, const char* place)
     return strcmp(places[generator->product], place) == 0 || strcmp(generator->kind, place) == 0;
 }
 
+int ty_recipe_frames(const ty_recipe* recipe)
+{
+    const ty_generator* generator = recipe->generator;
+    int count = generator->frame_count ? generator->frame_count(recipe->def) : 0;
+    return generator->product == TY_PRODUCT_FRAMES || (generator->product == TY_PRODUCT_MESH && count > 1) ? count : 0;
+}
+
 bool ty_recipe_is_file(const ty_node* node)
 {
     if (node->kind != TY_NODE_SCALAR)

@@ -39,15 +39,32 @@ static void read_recipe(ty_loader* loader, ty_node* node, const char* key, ty_as
         asset->kind = TY_ASSET_RECIPE;
 }
 
+// With times where it grows.
+static void read_mesh_recipe(ty_loader* loader, ty_node* node, ty_node* recipe, ty_asset* asset)
+{
+    static const char* const skip[] = {"mesh", NULL};
+    ty_mesh_asset_def def;
+    if (!ty_recipe_read(loader, recipe, "mesh", &asset->recipe))
+        return;
+    bool grows = ty_recipe_frames(&asset->recipe) > 0;
+    bool good = grows ? ty_params_read(&loader->reader, node, ty_mesh_asset_params(), &def, skip)
+                      : ty_params_check_keys(&loader->reader, node, skip, "asset.mesh with a recipe");
+    if (!good)
+        return;
+    asset->kind = TY_ASSET_RECIPE;
+    if (grows)
+        ty_mesh_sequence_expect(loader, asset, &def);
+}
+
 static void read_mesh(ty_loader* loader, ty_node* node, ty_asset* asset)
 {
-    if (ty_node_get(node, "mesh")->kind == TY_NODE_MAP)
-    {
-        read_recipe(loader, node, "mesh", asset);
-        return;
-    }
     static const char* const skip[] = {"mesh", NULL};
     ty_node* value = ty_node_get(node, "mesh");
+    if (value->kind == TY_NODE_MAP)
+    {
+        read_mesh_recipe(loader, node, value, asset);
+        return;
+    }
     bool is_sequence = value->kind == TY_NODE_SCALAR && ty_path_is_sequence(value->text);
     ty_mesh_asset_def def;
     if (!ty_params_read(&loader->reader, node, ty_mesh_asset_params(), &def, is_sequence ? skip : NULL))

@@ -262,10 +262,16 @@ const ty_param_table* ty_roots_recipe_params(void)
     return &recipe_table;
 }
 
+static int frame_count(const void* def)
+{
+    return ((const ty_roots_recipe*)def)->grow.frames;
+}
+
 const ty_generator ty_roots_generator = {
     .kind = "roots",
     .build_id = "roots 2",
     .product = TY_PRODUCT_MESH,
     .params = &recipe_table,
+    .frame_count = frame_count,
     .make = ty_roots_make_all,
 };

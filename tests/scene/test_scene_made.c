@@ -6,7 +6,7 @@
 
 static const char fill[] = "tsuya: 1\nkind: fill\ncells: [24, 16]\nscale: 1\nsteps: 40\n"
                            "drops: { count: 2, radius: 4 }\nloop: { frames: 5, span: 20 }\n";
-static const char roots[] = "tsuya: 1\nkind: roots\ncount: 2\nbranch: { levels: 0 }\ntip: 2\ndetail: 2\n";
+static const char roots[] = "tsuya: 1\nkind: roots\ncount: 2\nfirst: { spacing: 0 }\ntip: 2\ndetail: 2\n";
 static const char scene[] =
     "tsuya: 1\nassets: { fig: { mesh: roots.yaml }, glaze: { frames: fill.yaml, loop: true } }\n"
     "materials: { m: { model: surface, base_color: { texture: glaze } } }\n"
@@ -93,6 +93,33 @@ static void damage_is_made_good(void** state)
     must_load(NULL, 0, 2);
 }
 
+// A recipe that grows is a sequence in the scene's time; its frames are made once.
+static void roots_grow_with_the_scene(void** state)
+{
+    (void)state;
+    fixture_write("grow.yaml", "tsuya: 1\nkind: roots\ncount: 2\nfirst: { spacing: 0 }\ntip: 2\ndetail: 2\n"
+                               "grow: { frames: 3 }\n");
+    fixture_write("scene.yaml", "tsuya: 1\ntimeline: { end: 3 }\nassets: { fig: { mesh: grow.yaml, fps: 24 } }\n"
+                                "materials: { m: { model: surface } }\nobjects: [ { mesh: fig, material: m } ]\n");
+    must_load(NULL, 1, 0);
+    float reach[3];
+    for (int frame = 1; frame <= 3; frame++)
+    {
+        assert_int_equal(ty_scene_set_frame(fixture_scene, frame, &fixture_errors), TY_OK);
+        const ty_mesh* mesh = ty_world_prototype_mesh(fixture_scene->world, 0);
+        const ty_mesh_attribute* radius = ty_mesh_find_attribute(mesh, "radius");
+        reach[frame - 1] = 0.0f;
+        for (uint32_t v = 0; v < mesh->vertex_count; v++)
+            reach[frame - 1] += radius->values[v];
+    }
+    assert_true(reach[0] < reach[1] && reach[1] < reach[2]);
+    must_load(NULL, 0, 1);
+    assert_int_equal(fixture_check("tsuya: 1\ntimeline: { end: 3 }\n"
+                                   "assets: { fig: { mesh: grow.yaml, first_frame: 2, last_frame: 4 } }\n"),
+                     TY_BAD_INPUT);
+    assert_non_null(strstr(fixture_errors.items[0].text, "frames 2 to 4; the recipe makes 1 to 3"));
+}
+
 static void meshes_carry_their_recipe(void** state)
 {
     (void)state;
@@ -156,8 +183,8 @@ static void no_cache_is_needed(void** state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        FIXTURE_TEST(both_are_made_once),    FIXTURE_TEST(damage_is_made_good), FIXTURE_TEST(meshes_carry_their_recipe),
-        FIXTURE_TEST(places_are_told_apart), FIXTURE_TEST(no_cache_is_needed),
+        FIXTURE_TEST(roots_grow_with_the_scene), FIXTURE_TEST(both_are_made_once),    FIXTURE_TEST(damage_is_made_good),
+        FIXTURE_TEST(meshes_carry_their_recipe), FIXTURE_TEST(places_are_told_apart), FIXTURE_TEST(no_cache_is_needed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -74,8 +74,8 @@ typedef struct ty_generator
     const char* kind;     // the recipe's `kind:`, e.g. "aggregate"
     const char* build_id; // changes when the same recipe would give another result
     ty_product product;
-    const ty_param_table* params;                                              // of the whole recipe
-    int (*frame_count)(const void* def);                                       // of a sequence, at least 1; else NULL
+    const ty_param_table* params;        // of the whole recipe
+    int (*frame_count)(const void* def); // of a sequence, or of a mesh that grows, at least 1; else NULL
     int (*channels)(const void* def, ty_frame_channel out[TY_FRAME_CHANNELS]); // how many there can be; NULL: none
     // Deterministic for any worker count. On failure *out is as before. Cancelled: TY_INTERRUPTED.
     // TY_NOT_AT_REST still gives an aggregate (the best state, its metrics say so).
