@@ -76,7 +76,7 @@ void ty_mesh_sequence_expect(ty_loader* loader, ty_asset* asset, const ty_mesh_a
     if (s->first < 1 || s->first + s->count - 1 > most)
         ty_report(loader->errors, asset->place, TY_BAD_INPUT, "mesh: frames %d to %d; the recipe makes 1 to %d",
                   s->first, s->first + s->count - 1, most);
-    ty_check_sequence_covers(loader, &s->timing, s->count, asset->place);
+    ty_check_sequence_covers(loader, &s->timing, s->count < most ? s->count : most, asset->place);
     asset->sequence = resources->sequences[resources->sequence_count++] = s;
 }
 
