@@ -50,7 +50,7 @@ typedef struct column
 static const column point_columns[] = {
     {"x", -1e6, 1e6, false},      {"y", -1e6, 1e6, false},    {"z", -1e6, 1e6, false},
     {"nx", -1e3, 1e3, false},     {"ny", -1e3, 1e3, false},   {"nz", -1e3, 1e3, false},
-    {"radius", 1e-6, 1e4, false}, {"flat", 0.3, 1.0, false},  {"sink", 0.0, 0.9, false},
+    {"radius", 1e-6, 1e4, false}, {"flat", 0.3, 1.0, false},  {"sink", 0.0, 4.0, false},
     {"along", 0.0, 1e6, false},   {"birth", 0.0, 1.0, false}, {"line", 0, 2147483647.0, true},
 };
 static const column line_columns[] = {
