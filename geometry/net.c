@@ -195,16 +195,22 @@ static void strands_widen(ty_net* net)
         for (uint32_t node = 0; net->crossed[slot] && node < TY_NET_NODES; node++)
         {
             uint32_t place = (uint32_t)slot * TY_NET_NODES + node, other;
-            int at[3], inside = 0;
+            int at[3], inside = 0, corner[3];
             if (net->values[place] >= 0.0f || net->values[place] <= thin)
                 continue;
             node_coordinates(net, place, at);
+            memcpy(corner, at, sizeof corner);
             for (int i = 0; i < 6; i++)
             {
                 const int next[3] = {at[0] + around[i][0], at[1] + around[i][1], at[2] + around[i][2]};
-                inside |= (node_find(net, next, &other) && net->values[other] < 0.0f) << i;
+                bool in = node_find(net, next, &other) && net->values[other] < 0.0f;
+                inside += in;
+                for (int k = 0; k < 3; k++)
+                    corner[k] += in ? around[i][k] : 0;
             }
-            if (inside == 3 || inside == 12 || inside == 48) // the two along an axis, and no other
+            // Straight on it is the node itself that the two neighbours' steps lead to; else the fourth of a square.
+            bool straight = memcmp(corner, at, sizeof at) == 0;
+            if (inside == 2 && (straight || !node_find(net, corner, &other) || net->values[other] >= 0.0f))
                 net->values[place] = thin;
         }
 }

@@ -32,7 +32,7 @@ static roots_figures grow(const char* name, const ty_roots_recipe* recipe, const
 
 // What roots promise is a corner of 5 degrees at least, gaps below 0.1 radii for 99 % and bends of 100 degrees, 99 %
 // above 120. Bends they keep; of corners and gaps these are the bounds that they keep on all six hosts.
-#define CORNER_LEAST 1.0
+#define CORNER_LEAST 3.0
 #define GAP 0.7
 #define BEND_LEAST 100.0
 #define BEND_1 120.0
