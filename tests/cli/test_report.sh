@@ -46,7 +46,7 @@ P
 expect 0 "$tsuya" sweep scene.yaml --vary moisture=0.1,0.9 --size 1400x40 --spp 1 --aov none -o wide --progress none
 grep -q '"width":700,"height":20,"full":\[1400,40\]' wide/index.html || fail "a large picture is not made smaller"
 grep -q 'here at 1/2 of their width' wide/index.html || fail "the page does not tell its factor"
-printf 'tsuya: 1\nkind: roots\ncount: 2\nbranch: { levels: 1 }\nradius: 3\ntip: 2\ndetail: 2\n' >roots.yaml
+printf 'tsuya: 1\nkind: roots\ncount: 2\nsecond: { spacing: 0 }\nradius: 3\ntip: 2\ndetail: 2\n' >roots.yaml
 sed -e 's/floor: .*/floor: { mesh: roots.yaml }/' scene.yaml >rooted.yaml
 expect 3 "$tsuya" sweep rooted.yaml --vary assets.floor.mesh.tip=2,4,2.5 --reference assets.floor.mesh.tip=4 -o failing --progress none --spp 1
 

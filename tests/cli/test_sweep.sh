@@ -89,7 +89,7 @@ same row/sheet.exr first.exr
 cmp -s row/sheet.png first.png && fail "the sheet was not developed as asked for"
 
 # A cell that fails is told and the others are made; the status is its own.
-printf 'tsuya: 1\nkind: roots\ncount: 2\nbranch: { levels: 1 }\nradius: 3\ntip: 2\ndetail: 2\n' >roots.yaml
+printf 'tsuya: 1\nkind: roots\ncount: 2\nsecond: { spacing: 0 }\nradius: 3\ntip: 2\ndetail: 2\n' >roots.yaml
 sed -e 's/unused: .*/roots: { mesh: roots.yaml }/' -e 's/mesh: ball/mesh: roots/' scene.yaml >rooted.yaml
 expect 3 "$tsuya" sweep rooted.yaml --vary assets.roots.mesh.tip=2,4,2.5 -o failing --progress none --spp 1
 says "tip: 4 mm; it is at most the radius"
