@@ -4,6 +4,15 @@
 #include <string.h>
 #include <tsuya/base/math.h>
 
+// Takes the point (px, py) for (x, y) if it is nearer than (*nx, *ny); NaN is farther than any.
+static inline void take_nearer(float px, float py, float x, float y, float* nx, float* ny)
+{
+    float now = ty_sqr(*nx - x) + ty_sqr(*ny - y), other = ty_sqr(px - x) + ty_sqr(py - y);
+    bool nearer = other < now || (isnan(now) && !isnan(other));
+    *nx = nearer ? px : *nx;
+    *ny = nearer ? py : *ny;
+}
+
 // The point of cell (x + dx, y + dy), if it is nearer to (x, y) than the one that is known.
 static void look(const fill_run* run, int x, int y, int dx, int dy)
 {
@@ -24,24 +33,8 @@ static void look(const fill_run* run, int x, int y, int dx, int dy)
         j -= (int)shift_y;
     }
     size_t at = fill_cell(run, x, y), from = fill_cell(run, i, j);
-    if (isnan(run->near_x[from]))
-        return;
-    float px = run->near_x[from] + shift_x, py = run->near_y[from] + shift_y;
-    float ox = run->near_x[at] - (float)x, oy = run->near_y[at] - (float)y;
-    if (isnan(ox) || ty_sqr(px - (float)x) + ty_sqr(py - (float)y) < ox * ox + oy * oy)
-    {
-        run->near_x[at] = px;
-        run->near_y[at] = py;
-    }
-}
-
-// Takes the point (px, py) for (x, y) if it is nearer than (*nx, *ny); NaN is farther than any.
-static inline void take_nearer(float px, float py, float x, float y, float* nx, float* ny)
-{
-    float now = ty_sqr(*nx - x) + ty_sqr(*ny - y), other = ty_sqr(px - x) + ty_sqr(py - y);
-    bool nearer = other < now || (isnan(now) && !isnan(other));
-    *nx = nearer ? px : *nx;
-    *ny = nearer ? py : *ny;
+    take_nearer(run->near_x[from] + shift_x, run->near_y[from] + shift_y, (float)x, (float)y, &run->near_x[at],
+                &run->near_y[at]);
 }
 
 // Looks from a cell to its three neighbours of the row before, or behind.
