@@ -18,13 +18,6 @@ static void spline_weights(float t, float w[5])
     w[2] = 1.0f - w[0] - w[1] - w[3] - w[4];
 }
 
-static int near_cell(int i, int n, bool wrap)
-{
-    if (wrap)
-        return (i + n) % n; // n is at least 8
-    return i < 0 ? 0 : i >= n ? n - 1 : i;
-}
-
 // Smoothed shares of the layers about a pixel.
 static void shares(const fill_show_state* show, int x, int y, int cx, int cy, float share[FILL_LAYERS])
 {
@@ -36,8 +29,8 @@ static void shares(const fill_show_state* show, int x, int y, int cx, int cy, fl
     for (int j = 0; j < 5; j++)
         for (int i = 0; i < 5; i++)
         {
-            size_t at = fill_cell(run, near_cell(cx + i - 2, run->width, run->wrap_x),
-                                  near_cell(cy + j - 2, run->height, run->wrap_y));
+            size_t at = fill_cell(run, cubic_neighbour(cx + i - 2, run->width, run->wrap_x),
+                                  cubic_neighbour(cy + j - 2, run->height, run->wrap_y));
             share[run->layers[at]] += wx[i] * wy[j];
         }
 }
@@ -71,12 +64,12 @@ static void rows_compare(void* context, int64_t begin, int64_t end, int worker)
         memset(mixed, 0, (size_t)w);
         for (int j = -2; j <= 2; j++)
         {
-            const uint8_t* row = run->layers + fill_cell(run, 0, near_cell(y + j, run->height, run->wrap_y));
+            const uint8_t* row = run->layers + fill_cell(run, 0, cubic_neighbour(y + j, run->height, run->wrap_y));
             memcpy(wide + 2, row, (size_t)w);
             for (int k = 1; k <= 2; k++)
             {
-                wide[2 - k] = row[near_cell(-k, w, run->wrap_x)];
-                wide[w + 1 + k] = row[near_cell(w - 1 + k, w, run->wrap_x)];
+                wide[2 - k] = row[cubic_neighbour(-k, w, run->wrap_x)];
+                wide[w + 1 + k] = row[cubic_neighbour(w - 1 + k, w, run->wrap_x)];
             }
             for (int x = 0; x < w; x++)
                 mixed[x] |= (uint8_t)((wide[x] ^ layers[x]) | (wide[x + 1] ^ layers[x]) | (wide[x + 2] ^ layers[x]) |
@@ -126,8 +119,8 @@ void fill_coverage_row(const fill_show_state* show, int y, float* restrict out)
     const fill_run* run = show->run;
     size_t w = (size_t)show->width;
     const float* row = show->v + (size_t)y * w;
-    const float* above = show->v + (size_t)near_cell(y - 1, show->height, run->wrap_y) * w;
-    const float* below = show->v + (size_t)near_cell(y + 1, show->height, run->wrap_y) * w;
+    const float* above = show->v + (size_t)cubic_neighbour(y - 1, show->height, run->wrap_y) * w;
+    const float* below = show->v + (size_t)cubic_neighbour(y + 1, show->height, run->wrap_y) * w;
     float level = run->level, before = run->wrap_x ? row[w - 1] : row[0], behind = run->wrap_x ? row[0] : row[w - 1];
     for (size_t x = 1; x + 1 < w; x++)
         out[x] = coverage_of(row[x - 1], row[x + 1], above[x], below[x], row[x], level);
