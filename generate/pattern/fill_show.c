@@ -8,17 +8,12 @@
 
 // --- what is needed ---
 
-static bool is_grey(ty_rgb c)
-{
-    return c.r == c.g && c.g == c.b;
-}
-
 static bool all_grey(const fill_run* run)
 {
-    bool grey = !run->over.path && (!fill_has_closed_cells(run->recipe) || is_grey(run->recipe->outside));
+    bool grey = !run->over.path && (!fill_has_closed_cells(run->recipe) || pattern_is_grey(run->recipe->outside));
     for (int i = 0; i < run->mark_count; i++)
-        grey = grey && is_grey(run->marks[i].color) && is_grey(run->marks[i].ground) && !run->images[i][0].path &&
-               !run->images[i][1].path;
+        grey = grey && pattern_is_grey(run->marks[i].color) && pattern_is_grey(run->marks[i].ground) &&
+               !run->images[i][0].path && !run->images[i][1].path;
     return grey;
 }
 

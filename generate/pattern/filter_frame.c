@@ -214,8 +214,7 @@ static void rows_paint(void* context, int64_t begin, int64_t end, int worker)
 
 static bool is_grey(const ty_filter_recipe* r)
 {
-    bool low = r->low.r == r->low.g && r->low.g == r->low.b, high = r->high.r == r->high.g && r->high.g == r->high.b;
-    return r->color == TY_FILTER_GREY && low && high;
+    return r->color == TY_FILTER_GREY && pattern_is_grey(r->low) && pattern_is_grey(r->high);
 }
 
 // --- the frame ---

@@ -240,8 +240,7 @@ const float* ty_loop_painter_coverage(const ty_loop_painter* painter)
 
 static ty_exr* image_make(ty_loop_painter* p)
 {
-    bool grey = !p->volume->labels && !p->volume->tints && p->low.r == p->low.g && p->low.g == p->low.b &&
-                p->high.r == p->high.g && p->high.g == p->high.b;
+    bool grey = !p->volume->labels && !p->volume->tints && pattern_is_grey(p->low) && pattern_is_grey(p->high);
     ty_exr* image = pattern_image_create(p->width, p->height, grey, p->channels);
     p->alpha = p->clear ? ty_exr_add_channel(image, "A", TY_EXR_HALF) : NULL;
     return image;
