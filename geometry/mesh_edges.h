@@ -24,8 +24,18 @@ size_t* ty_mesh_sort_half_edges(const ty_mesh* mesh, size_t* count);
 size_t ty_half_edge_run(const ty_mesh* mesh, const size_t* sorted, size_t begin, size_t count);
 
 // Disjoint sets over size_t; parents[i] = i to begin with. The smaller root wins.
-size_t ty_set_find(size_t* parents, size_t i);
-void ty_set_join(size_t* parents, size_t a, size_t b);
+static inline size_t ty_set_find(size_t* parents, size_t i)
+{
+    while (parents[i] != i)
+        i = parents[i] = parents[parents[i]];
+    return i;
+}
+static inline void ty_set_join(size_t* parents, size_t a, size_t b)
+{
+    a = ty_set_find(parents, a);
+    b = ty_set_find(parents, b);
+    parents[a < b ? b : a] = a < b ? a : b;
+}
 
 typedef struct ty_double3
 {

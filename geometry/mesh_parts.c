@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which parts of a mesh are closed, which are open but hold a space in, and which are sheets.
+#include "mesh_edges.h"
 #include "winding.h"
 #include <tsuya/base/rng.h>
 
@@ -12,27 +13,14 @@ enum
 
 // --- parts ---
 
-static uint32_t root_of(uint32_t* parent, uint32_t i)
-{
-    for (; parent[i] != i; i = parent[i])
-        parent[i] = parent[parent[i]];
-    return i;
-}
-
 // The smallest weld of each part.
-static void parts_join(const ty_mesh* mesh, uint32_t* parent)
+static void parts_join(const ty_mesh* mesh, size_t* parents)
 {
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
-        parent[i] = mesh->welds[i];
+        parents[i] = mesh->welds[i];
     for (uint32_t t = 0; t < mesh->triangle_count; t++)
         for (int k = 0; k < 2; k++)
-        {
-            uint32_t a = root_of(parent, mesh->triangles[t][k]), b = root_of(parent, mesh->triangles[t][k + 1]);
-            if (a < b)
-                parent[b] = a;
-            else
-                parent[a] = b;
-        }
+            ty_set_join(parents, mesh->triangles[t][k], mesh->triangles[t][k + 1]);
 }
 
 // A sum over all edges, each by its direction: 0 where every edge is run through as often one way as the other. Sums
@@ -142,16 +130,17 @@ bool mesh_parts_find(const ty_mesh* mesh, mesh_parts* out)
 {
     *out = (mesh_parts){TY_TRY_ALLOC(uint8_t, mesh->triangle_count), TY_TRY_ALLOC(int8_t, mesh->triangle_count),
                         TY_TRY_ALLOC(uint32_t, mesh->triangle_count), 0, false};
-    uint32_t *parent = TY_TRY_ALLOC(uint32_t, mesh->vertex_count), *part = TY_TRY_ALLOC(uint32_t, mesh->triangle_count);
-    bool held = out->kind && out->side && out->open && parent && part;
+    size_t* parents = TY_TRY_ALLOC(size_t, mesh->vertex_count);
+    uint32_t* part = TY_TRY_ALLOC(uint32_t, mesh->triangle_count);
+    bool held = out->kind && out->side && out->open && parents && part;
     if (held)
     {
-        parts_join(mesh, parent);
+        parts_join(mesh, parents);
         for (uint32_t t = 0; t < mesh->triangle_count; t++)
-            part[t] = root_of(parent, mesh->triangles[t][0]);
+            part[t] = (uint32_t)ty_set_find(parents, mesh->triangles[t][0]);
         held = parts_judge(mesh, part, out);
     }
-    ty_free(parent);
+    ty_free(parents);
     ty_free(part);
     if (!held)
         mesh_parts_term(out);

@@ -100,26 +100,6 @@ size_t ty_half_edge_run(const ty_mesh* mesh, const size_t* sorted, size_t begin,
     return end - begin;
 }
 
-size_t ty_set_find(size_t* parents, size_t i)
-{
-    while (parents[i] != i)
-    {
-        parents[i] = parents[parents[i]];
-        i = parents[i];
-    }
-    return i;
-}
-
-void ty_set_join(size_t* parents, size_t a, size_t b)
-{
-    a = ty_set_find(parents, a);
-    b = ty_set_find(parents, b);
-    if (a < b)
-        parents[b] = a;
-    else
-        parents[a] = b;
-}
-
 // With e along the first triangle's half edge, (n1 x n2) . e is the sine of the outward bend.
 static bool edge_is_convex(const ty_mesh* mesh, size_t h1, size_t h2)
 {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vertices of a sparse surface net spread evenly over the surface; its triangles.
+#include "mesh_edges.h"
 #include "net.h"
 #include <string.h>
 
@@ -116,13 +117,6 @@ bool ty_net_relax(ty_net* net, int rounds, ty_workers* workers)
 
 // --- pieces ---
 
-static int32_t piece_of(int32_t* parent, int32_t v)
-{
-    while (parent[v] != v)
-        v = parent[v] = parent[parent[v]];
-    return v;
-}
-
 static double quad_volume(const ty_net* net, const int32_t* q)
 {
     const ty_vec3* p = net->positions;
@@ -131,26 +125,23 @@ static double quad_volume(const ty_net* net, const int32_t* q)
     return (double)ty_dot(p[q[0]], n);
 }
 
-// The root of the largest shell in parent.
-static int32_t pieces_find(const ty_net* net, int32_t* parent, double* volume, ty_net_pieces* pieces)
+// Each vertex' piece, by its first vertex; returns that of the largest shell.
+static size_t pieces_find(const ty_net* net, size_t* piece, double* volume, ty_net_pieces* pieces)
 {
-    int32_t best = 0;
-    for (int32_t v = 0; v < net->vertex_count; v++)
-        parent[v] = v;
-    for (int32_t v = 0; v < net->vertex_count; v++)
+    size_t count = (size_t)net->vertex_count, best = 0;
+    for (size_t v = 0; v < count; v++)
+        piece[v] = v;
+    for (size_t v = 0; v < count; v++)
         for (int i = 0; i < 6; i++)
-        {
-            int32_t other = net->neighbours[v][i];
-            if (other < 0)
-                continue;
-            int32_t a = piece_of(parent, v), b = piece_of(parent, other);
-            parent[a > b ? a : b] = a > b ? b : a;
-        }
+            if (net->neighbours[v][i] >= 0)
+                ty_set_join(piece, v, (size_t)net->neighbours[v][i]);
+    for (size_t v = 0; v < count; v++)
+        piece[v] = ty_set_find(piece, v);
     for (int q = 0; q < net->quad_count; q++)
-        volume[piece_of(parent, net->quads[q][0])] += quad_volume(net, net->quads[q]);
+        volume[piece[net->quads[q][0]]] += quad_volume(net, net->quads[q]);
     *pieces = (ty_net_pieces){0};
-    for (int32_t v = 0; v < net->vertex_count; v++)
-        if (parent[v] == v)
+    for (size_t v = 0; v < count; v++)
+        if (piece[v] == v)
         {
             best = volume[v] > volume[best] ? v : best;
             pieces->shells += volume[v] > 0.0;
@@ -180,11 +171,11 @@ static void quad_cut(const ty_vec3* p, const int32_t* q, uint32_t (*out)[3])
     memcpy(out[1], (const uint32_t[3]){v[0], v[2], v[3]}, sizeof(uint32_t[3]));
 }
 
-static ty_mesh* shell_mesh(const ty_net* net, const int32_t* parent, int32_t shell, int32_t* number)
+static ty_mesh* shell_mesh(const ty_net* net, const size_t* piece, size_t shell, int32_t* number)
 {
     uint32_t vertices = 0, quads = 0;
     for (int32_t v = 0; v < net->vertex_count; v++)
-        number[v] = parent[v] == shell ? (int32_t)vertices++ : -1;
+        number[v] = piece[v] == shell ? (int32_t)vertices++ : -1;
     for (int q = 0; q < net->quad_count; q++)
         quads += number[net->quads[q][0]] >= 0;
     ty_mesh* mesh = ty_mesh_create(vertices, 2 * quads);
@@ -208,21 +199,17 @@ static ty_mesh* shell_mesh(const ty_net* net, const int32_t* parent, int32_t she
 
 ty_status ty_net_mesh(const ty_net* net, ty_mesh** out, ty_net_pieces* pieces, ty_error* error)
 {
-    int32_t* parent = TY_TRY_ALLOC(int32_t, net->vertex_count);
+    size_t* piece = TY_TRY_ALLOC(size_t, net->vertex_count);
     int32_t* number = TY_TRY_ALLOC(int32_t, net->vertex_count);
     double* volume = TY_TRY_ALLOC(double, net->vertex_count);
     ty_net_pieces found;
     *out = NULL;
-    if (parent && number && volume)
+    if (piece && number && volume)
     {
-        int32_t shell = pieces_find(net, parent, volume, pieces ? pieces : &found);
-        for (int32_t v = 0; v < net->vertex_count; v++)
-            piece_of(parent, v);
-        for (int32_t v = 0; v < net->vertex_count; v++)
-            parent[v] = piece_of(parent, v);
-        *out = shell_mesh(net, parent, shell, number);
+        size_t shell = pieces_find(net, piece, volume, pieces ? pieces : &found);
+        *out = shell_mesh(net, piece, shell, number);
     }
-    ty_free(parent);
+    ty_free(piece);
     ty_free(number);
     ty_free(volume);
     return *out ? TY_OK

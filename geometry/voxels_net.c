@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Surface nets: a vertex in each cell of the solid's surface, four cells about each edge that it crosses.
+#include "mesh_edges.h"
 #include "voxels.h"
 #include <string.h>
 
@@ -248,13 +249,6 @@ static void vertices_relax(net* n)
 
 // --- pieces ---
 
-static int32_t piece_of(int32_t* parent, int32_t v)
-{
-    while (parent[v] != v)
-        v = parent[v] = parent[parent[v]];
-    return v;
-}
-
 // Six times the signed volume of the quad's cone from the origin of the grid.
 static double quad_volume(const net* n, const int32_t* q)
 {
@@ -267,28 +261,28 @@ static double quad_volume(const net* n, const int32_t* q)
 // Leaves the quads of the largest piece; its cavities are pieces of their own, of negative volume.
 static ty_status pieces_drop(net* n, ty_error* error)
 {
-    int32_t* parent = TY_TRY_ALLOC(int32_t, n->vertex_count);
+    size_t* parents = TY_TRY_ALLOC(size_t, n->vertex_count);
     double* volume = TY_TRY_ALLOC(double, n->vertex_count);
-    ty_status status = parent && volume ? TY_OK : ty_error_set(error, TY_NO_MEMORY, "no memory for a surface");
+    ty_status status = parents && volume ? TY_OK : ty_error_set(error, TY_NO_MEMORY, "no memory for a surface");
     if (status == TY_OK)
     {
-        int32_t best = 0;
+        size_t count = (size_t)n->vertex_count, best = 0;
         int kept = 0;
-        for (int32_t v = 0; v < n->vertex_count; v++)
-            parent[v] = v;
+        for (size_t v = 0; v < count; v++)
+            parents[v] = v;
         for (int q = 0; q < n->quad_count; q++)
             for (int e = 1; e < 4; e++)
-                parent[piece_of(parent, n->quads[q][e])] = piece_of(parent, n->quads[q][0]);
+                ty_set_join(parents, (size_t)n->quads[q][e], (size_t)n->quads[q][0]);
         for (int q = 0; q < n->quad_count; q++)
-            volume[piece_of(parent, n->quads[q][0])] += quad_volume(n, n->quads[q]);
-        for (int32_t v = 0; v < n->vertex_count; v++)
+            volume[ty_set_find(parents, (size_t)n->quads[q][0])] += quad_volume(n, n->quads[q]);
+        for (size_t v = 0; v < count; v++)
             best = volume[v] > volume[best] ? v : best;
         for (int q = 0; q < n->quad_count; q++)
-            if (piece_of(parent, n->quads[q][0]) == best)
+            if (ty_set_find(parents, (size_t)n->quads[q][0]) == best)
                 memmove(n->quads[kept++], n->quads[q], sizeof(*n->quads));
         n->quad_count = kept;
     }
-    ty_free(parent);
+    ty_free(parents);
     ty_free(volume);
     return status;
 }
