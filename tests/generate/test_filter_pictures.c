@@ -1,39 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Turing filter on a picture, for thousands of time units: the picture stays in tone mode, edges stay for a while.
 #include "filter_frames.h"
+#include "plane_compare.h"
 #include <tsuya/image/color.h>
 
 // --- how much of a picture is there ---
 
-// Means over a binomial window of 18 passes of three cells: a standard deviation of 3.5.
+// Weighted means, a standard deviation of 3.5 cells.
 static void blur(double* plane, int w, int h)
 {
     double* scratch = TY_ALLOC(double, w* h);
-    for (int pass = 0; pass < 18; pass++)
-    {
-        for (int i = 0; i < w * h; i++)
-            scratch[i] = (plane[i % w ? i - 1 : i] + plane[i] + plane[i % w + 1 < w ? i + 1 : i]) / 3.0;
-        for (int i = 0; i < w * h; i++)
-            plane[i] = (scratch[i >= w ? i - w : i] + scratch[i] + scratch[i + w < w * h ? i + w : i]) / 3.0;
-    }
+    local_means(plane, w, h, 18, scratch);
     ty_free(scratch);
-}
-
-static double correlation(const double* a, const double* b, int n)
-{
-    double ma = 0.0, mb = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
-    for (int i = 0; i < n; i++)
-    {
-        ma += a[i] / n;
-        mb += b[i] / n;
-    }
-    for (int i = 0; i < n; i++)
-    {
-        aa += (a[i] - ma) * (a[i] - ma);
-        bb += (b[i] - mb) * (b[i] - mb);
-        ab += (a[i] - ma) * (b[i] - mb);
-    }
-    return ab / sqrt(aa * bb + 1e-30);
 }
 
 static float light_of(float shown)

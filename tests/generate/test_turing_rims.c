@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What rims do to stripes of a Turing field, and how long limited diffusion keeps a picture, against figures of an
 // independent program in double precision.
+#include "plane_compare.h"
 #include "turing_fields.h"
 
 // --- rims ---
@@ -72,30 +73,7 @@ static void steepness(ty_turing* field, double* out, double* scratch)
         float gy = ty_turing_u(field, y + 1 < N ? y + 1 : y)[x] - ty_turing_u(field, y ? y - 1 : y)[x];
         out[i] = hypot((double)gx, (double)gy);
     }
-    for (int pass = 0; pass < 3; pass++)
-    {
-        for (int i = 0; i < N * N; i++)
-            scratch[i] = (out[i % N ? i - 1 : i] + out[i] + out[i % N + 1 < N ? i + 1 : i]) / 3.0;
-        for (int i = 0; i < N * N; i++)
-            out[i] = (scratch[i >= N ? i - N : i] + scratch[i] + scratch[i + N < N * N ? i + N : i]) / 3.0;
-    }
-}
-
-static double correlation(const double* a, const double* b, int n)
-{
-    double ma = 0.0, mb = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
-    for (int i = 0; i < n; i++)
-    {
-        ma += a[i] / n;
-        mb += b[i] / n;
-    }
-    for (int i = 0; i < n; i++)
-    {
-        aa += (a[i] - ma) * (a[i] - ma);
-        bb += (b[i] - mb) * (b[i] - mb);
-        ab += (a[i] - ma) * (b[i] - mb);
-    }
-    return ab / sqrt(aa * bb);
+    local_means(out, N, N, 3, scratch);
 }
 
 // Edges of U at 90, 500 and 1500 against those it started from.
