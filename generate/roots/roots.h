@@ -83,7 +83,8 @@ typedef struct roots_point
 } roots_point;
 
 // Points are ordered away from the trunk; neighbours lie no more than 0.6 r apart on average. The first point of a
-// branch is, bit for bit in place, one of its parent, its last one of the root that it grows into.
+// branch is, bit for bit in place, one of its parent, its last one of the root that it grows into. A main root begins
+// beside its parent, if it has one: the trunk, or the first that sets out from the same place.
 typedef struct roots_line
 {
     int first, count; // in points

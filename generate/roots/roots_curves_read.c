@@ -390,13 +390,15 @@ static ty_status join(const reader* r, int number, const char* what, int other, 
                                what, other, net->line_count - 1);
     *out = point_nearest(net, other, net->points[point].p);
     const roots_point* there = &net->points[*out];
+    bool beside = net->lines[number].kind == ROOTS_MAIN && point == net->lines[number].first; // as a strand of it
     float apart = ty_length(ty_sub(there->p, net->points[point].p));
-    if (apart > there->r)
+    float most = there->r + (beside ? net->points[point].r : 0.0f);
+    if (apart > most)
         return ty_error_set_at(r->error, TY_BAD_INPUT, r->path, r->rows[number], 1,
                                "line %d: it %s %.4g mm away from line %d, its %s; at most the radius there, %.4g mm",
                                number, point == net->lines[number].first ? "begins" : "ends", (double)apart * 1e3,
-                               other, what, (double)there->r * 1e3);
-    if (apart > 1e-3f * there->r) // what was written stays as it was, bit for bit
+                               other, what, (double)most * 1e3);
+    if (!beside && apart > 1e-3f * there->r) // what was written stays as it was, bit for bit
         net->points[point].p = there->p;
     return TY_OK;
 }

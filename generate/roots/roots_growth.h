@@ -19,6 +19,12 @@ static inline ty_vec3 growth_without(ty_vec3 v, ty_vec3 unit)
     return ty_mad(v, unit, -ty_dot(v, unit));
 }
 
+// Does it begin on its parent's line? Main roots run beside what they belong to.
+static inline bool growth_leaves(const roots_line* line)
+{
+    return line->parent >= 0 && line->kind != ROOTS_MAIN;
+}
+
 // How high over the host the centre of a section lies, m.
 static inline float growth_height(const roots_point* p)
 {

@@ -125,6 +125,21 @@ static void starts_begin(march* m)
     }
 }
 
+// Main roots belong to the trunk, or to the first of those that set out from the same place.
+static void mains_tie(const growth* g)
+{
+    const roots_network* net = g->network;
+    bool trunk = net->lines[0].kind == ROOTS_TRUNK;
+    for (int i = 0; i < net->line_count; i++)
+    {
+        int parent = trunk ? 0 : g->start_count > 0 ? i % g->start_count : i;
+        if (parent == i)
+            continue;
+        net->lines[i].parent = parent;
+        net->lines[i].parent_point = net->lines[parent].first;
+    }
+}
+
 bool growth_main(growth* g)
 {
     const ty_roots_recipe* recipe = g->recipe;
@@ -149,6 +164,7 @@ bool growth_main(growth* g)
         tips_begin(m);
     march_run(m);
     march_destroy(m);
+    mains_tie(g);
     return !ty_cancel_requested();
 }
 

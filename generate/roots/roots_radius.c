@@ -17,7 +17,7 @@ static float* flows_make(const growth* g)
     {
         const roots_line* l = &net->lines[i];
         float own = ty_exp(g->recipe->exponent * ty_ln(net->points[l->first + l->count / 2].r));
-        if (l->parent >= 0)
+        if (growth_leaves(l))
             flow[l->parent_point] += own;
         if (l->end >= 0)
             flow[l->end_point] -= own;
@@ -70,7 +70,7 @@ void growth_pipe(const growth* g)
     for (int i = 0; i < net->line_count; i++) // those that are joined come first
     {
         const roots_line* l = &net->lines[i];
-        if (l->parent >= 0)
+        if (growth_leaves(l))
             end_fit(net, l, l->first, net->points[l->parent_point].r);
         if (l->end >= 0)
             end_fit(net, l, l->first + l->count - 1, net->points[l->end_point].r);
@@ -93,7 +93,7 @@ void growth_births(roots_network* net)
         const roots_line* l = &net->lines[i];
         roots_point* points = net->points + l->first;
         float start = points[0].s, length = points[l->count - 1].s - start;
-        if (l->parent >= 0)
+        if (growth_leaves(l))
             start = net->points[l->parent_point].birth + 0.04f * longest;
         if (l->end >= 0)
             start = ty_max(start, net->points[l->end_point].birth - length);

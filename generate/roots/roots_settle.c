@@ -156,11 +156,11 @@ void growth_settle_line(const growth* g, int line, bool exact)
     const roots_line* l = &net->lines[line];
     if (l->kind == ROOTS_TRUNK)
         return;
-    if (l->parent >= 0)
+    if (growth_leaves(l))
         end_move(net, l, false, &net->points[l->parent_point]);
     if (l->end >= 0)
         end_move(net, l, true, &net->points[l->end_point]);
-    for (int k = l->parent >= 0; k < l->count - (l->end >= 0); k++)
+    for (int k = growth_leaves(l); k < l->count - (l->end >= 0); k++)
         point_settle(&on, &net->points[l->first + k]);
     bridge(&on, net->points + l->first, l->count);
     ease(&on, net->points + l->first, l->count);

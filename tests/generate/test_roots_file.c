@@ -58,6 +58,7 @@ static void holds(const char* name, int detail)
     assert_true(f.attached > 100 && f.gap_99 <= GAP);
     assert_true(f.bend_least >= BEND_LEAST && f.bend_1 >= BEND_1);
     assert_true(f.lines > 11);
+    assert_int_equal(f.parts, 1);
 }
 
 #define HOST(name)                                                                                                     \

@@ -49,7 +49,36 @@ typedef struct measures
     float join, join_low; // the same where lines meet
     float deep;           // the deepest centre under where it should be, of its radius
     int asked, got, first, second;
+    int apart; // lines that nothing leads to from the trunk
 } measures;
+
+// Lines that the first does not reach over parents and ends, of those that begin and end where those are.
+static int apart(const roots_network* net)
+{
+    bool* reached = calloc((size_t)net->line_count, sizeof *reached);
+    int count = net->line_count - 1;
+    reached[0] = true;
+    for (bool more = true; more;)
+    {
+        more = false;
+        for (int i = 0; i < net->line_count; i++)
+            for (int k = 0; k < 2; k++)
+            {
+                const roots_line* l = &net->lines[i];
+                int other = k ? l->end : l->parent, there = k ? l->end_point : l->parent_point;
+                int here = k ? l->first + l->count - 1 : l->first;
+                if (other < 0 || reached[i] == reached[other])
+                    continue;
+                float most = l->kind == ROOTS_MAIN ? net->points[there].r + net->points[here].r : 0.0f;
+                if (!(ty_length(ty_sub(net->points[there].p, net->points[here].p)) <= most))
+                    continue;
+                reached[i] = reached[other] = more = true;
+                count--;
+            }
+    }
+    free(reached);
+    return count;
+}
 
 // The straighter way on into the other line.
 static float join_angle(const roots_network* net, ty_vec3 before, int line, int point)
@@ -85,7 +114,7 @@ static measures measure(const grown* g)
                                          roots_host_exact(&g->host, p[i].p, 4.0f * p[i].r + g->host.field.step, &n)) /
                                             p[i].r);
         }
-        if (l->parent >= 0)
+        if (l->parent >= 0 && l->kind != ROOTS_MAIN) // which run beside the trunk
             joins[join_count++] = join_angle(net, p[1].p, l->parent, l->parent_point);
         if (l->end >= 0)
             joins[join_count++] = join_angle(net, p[l->count - 2].p, l->end, l->end_point);
@@ -101,6 +130,7 @@ static measures measure(const grown* g)
         m.asked += net->requested[k];
         m.got += net->grown[k];
     }
+    m.apart = apart(net);
     free(angles);
     free(joins);
     return m;
@@ -163,6 +193,7 @@ static void all_that_is_asked_for_grows(void** state)
                       names[host], m.got, m.asked, m.first, m.second, m.least, m.low, m.join, m.join_low, m.deep);
         assert_true(m.first > 40 && m.second > 20);
         assert_true(m.got == m.asked);
+        assert_int_equal(m.apart, 0);
         assert_true(m.least >= 100.0f && m.low >= 120.0f);
         assert_true(m.join_low >= 100.0f);
         assert_true(m.deep <= 0.05f);
