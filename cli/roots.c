@@ -56,6 +56,23 @@ static void report_print(const json_t* report)
            number(report, "bend_p1"));
 }
 
+// Both methods on the same host, where the thesis' is asked for.
+static void methods_print(const json_t* report)
+{
+    const char* name;
+    json_t *method, *methods = json_object_get(report, "methods");
+    if (!json_object_get(methods, "seed"))
+        return;
+    json_object_foreach(methods, name, method)
+    {
+        printf("%-8s %d of %d branches failed (%d no angle, %d restarts, %d points, %d no partner); %d kinked, ", name,
+               (int)number(method, "failed"), (int)number(method, "branches"), (int)number(method, "no_angle"),
+               (int)number(method, "restarts"), (int)number(method, "points"), (int)number(method, "no_partner"),
+               (int)number(method, "kinked"));
+        printf("%.2f radii too deep, %.0f %% held\n", number(method, "deepest"), 100.0 * number(method, "held"));
+    }
+}
+
 static ty_status report_give(const ty_arguments* arguments, const char* output, const char* text)
 {
     const char* file = ty_argument_text(arguments, "report", NULL);
@@ -73,6 +90,7 @@ static ty_status report_give(const ty_arguments* arguments, const char* output, 
     {
         printf("%s\n", output);
         report_print(report);
+        methods_print(report);
         status = ty_output_finish();
     }
     json_decref(report);

@@ -94,6 +94,16 @@ typedef struct roots_line
     uint64_t key;             // of its random numbers
 } roots_line;
 
+// Why branches of the thesis' method fail.
+typedef enum roots_failure
+{
+    ROOTS_NO_ANGLE,   // no angle about the vertical is free of the host
+    ROOTS_RESTARTS,   // too many new curves
+    ROOTS_POINTS,     // too many points
+    ROOTS_NO_PARTNER, // what it should grow into is not there
+    ROOTS_FAILURES,
+} roots_failure;
+
 typedef struct roots_network
 {
     roots_point* points;
@@ -102,6 +112,8 @@ typedef struct roots_network
     int line_count, line_capacity;
     float top;                                      // y, where the trunk is cut
     int requested[ROOTS_KINDS], grown[ROOTS_KINDS]; // lines of a kind
+    int failed[ROOTS_FAILURES];                     // branches
+    int stuck;                                      // main roots that cannot move on
 } roots_network;
 
 void roots_network_term(roots_network* network);

@@ -9,6 +9,21 @@ ty_vec3 growth_tangent(const roots_network* network, const roots_line* line, int
     return ty_normalize(ty_sub(network->points[after].p, network->points[before].p));
 }
 
+static bool wrap_grow(growth* g)
+{
+    const ty_roots_recipe* recipe = g->recipe;
+    bool done = growth_main(g) && growth_aerial(g);
+    growth_settle(g, 0, false);
+    int first = g->network->line_count;
+    done = done && growth_link(g, &recipe->first, ROOTS_MAIN, ROOTS_FIRST);
+    growth_part(g, first);
+    growth_settle(g, 0, false);
+    done = done && growth_link(g, &recipe->second, ROOTS_FIRST, ROOTS_SECOND);
+    growth_pipe(g);
+    growth_settle(g, 0, true);
+    return done && growth_cover(g);
+}
+
 ty_status roots_grow(const ty_roots_recipe* recipe, const roots_host* host, ty_workers* workers, roots_network* out,
                      ty_error* error)
 {
@@ -17,16 +32,7 @@ ty_status roots_grow(const ty_roots_recipe* recipe, const roots_host* host, ty_w
     ty_status status = roots_host_starts(host, recipe, recipe->count, &g.starts, &g.start_count, error);
     if (status != TY_OK)
         return status;
-    bool done = growth_main(&g) && growth_aerial(&g);
-    growth_settle(&g, 0, false);
-    int first = out->line_count;
-    done = done && growth_link(&g, &recipe->first, ROOTS_MAIN, ROOTS_FIRST);
-    growth_part(&g, first);
-    growth_settle(&g, 0, false);
-    done = done && growth_link(&g, &recipe->second, ROOTS_FIRST, ROOTS_SECOND);
-    growth_pipe(&g);
-    growth_settle(&g, 0, true);
-    done = done && growth_cover(&g);
+    bool done = recipe->method == TY_ROOTS_SEED ? growth_seed(&g) : wrap_grow(&g);
     growth_births(out);
     ty_free(g.starts);
     if (!done)

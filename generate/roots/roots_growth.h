@@ -45,6 +45,8 @@ void growth_births(roots_network* network);
 // The direction of a line at a point, unit.
 ty_vec3 growth_tangent(const roots_network* network, const roots_line* line, int point);
 
+// The whole network by the thesis' method. false: cancelled.
+bool growth_seed(growth* g);
 // Main roots, then those that hang from them. false: cancelled.
 bool growth_main(growth* g);
 bool growth_aerial(growth* g);

@@ -2,6 +2,7 @@
 // What becomes of grown roots besides their mesh: a file of centre lines, a report, frames of their growth.
 #pragma once
 #include "roots.h"
+#include <tsuya/base/sink.h>
 
 // All that was made. Borrowed.
 typedef struct roots_result
@@ -31,6 +32,9 @@ TY_CHECKED ty_status roots_curves_read(const char* path, roots_network* out, ty_
 
 // Figures of network and mesh as a JSON object; the caller frees it with ty_free.
 char* roots_report(const roots_result* result, ty_workers* workers);
+// `, "methods": {...}`: what failed of the network, and by the thesis' method beside it what fails of ours on the same
+// host.
+void roots_compare(const roots_result* result, ty_workers* workers, ty_sink* out);
 
 // --- growth by time ---
 

@@ -6,6 +6,7 @@
 ty_roots_recipe ty_roots_recipe_default(void)
 {
     ty_roots_recipe recipe = {
+        .thesis = {.unit = 0.5f, .fall = 1.0f},
         .host = {.kind = TY_ROOTS_HOST_SPHERE, .shape = ty_shape_def_default(), .floor = true, .resolution = 256},
         .trunk = {0.03f, 0.012f, {0.0f, 0.0f, 0.0f}},
         .count = 11,
@@ -204,6 +205,21 @@ static const ty_param cover_rows[] = {
 TABLE(cover_table, "roots.cover", "Fine roots over what is left of the host, by space colonisation.", cover_rows);
 #undef OWNER
 
+// --- the thesis' own method ---
+
+static void set_thesis_table(void* def)
+{
+    *(ty_roots_thesis_def*)def = ty_roots_recipe_default().thesis;
+}
+
+#define OWNER ty_roots_thesis_def
+static const ty_param thesis_rows[] = {
+    FIELD("unit", TY_PARAM_FLOAT, "", 0.01, 100, unit, "unit of the thesis' lengths, of the radius"),
+    FIELD("fall", TY_PARAM_FLOAT, "", 0, 1e6, fall, "weight of down in the way of a main root; 1 as printed"),
+};
+TABLE(thesis_table, "roots.thesis", "What only method seed has.", thesis_rows);
+#undef OWNER
+
 // --- growth by time ---
 
 static void set_grow_table(void* def)
@@ -222,6 +238,8 @@ TABLE(grow_table, "roots.grow", "The same roots as they come about.", grow_rows)
 
 // --- the recipe ---
 
+static const char* const methods[] = {"wrap", "seed", NULL};
+
 static void set_recipe_table(void* def)
 {
     *(ty_roots_recipe*)def = ty_roots_recipe_default();
@@ -229,6 +247,10 @@ static void set_recipe_table(void* def)
 
 #define OWNER ty_roots_recipe
 static const ty_param recipe_rows[] = {
+    {"method", TY_PARAM_ENUM, "", 0, 0, methods, NULL, offsetof(OWNER, method),
+     "wrap: led by the host's field, branches drawn tight; seed: as in the thesis that roots are after, for comparison",
+     false},
+    GROUP("thesis", &thesis_table, thesis, "what only method seed has"),
     GROUP("host", &host_table, host, "what they hold on to"),
     LIST("obstacles", &object_table, obstacles, "what they keep clear of but do not hold to"),
     GROUP("start", &start_table, start, "where they start, in place of the trunk"),

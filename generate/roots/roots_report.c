@@ -2,7 +2,6 @@
 // Figures of roots: what was asked for and what grew, how the mesh holds on to its host, and how well it is made.
 #include "roots_output.h"
 #include <stdlib.h>
-#include <tsuya/base/sink.h>
 
 enum
 {
@@ -218,6 +217,7 @@ char* roots_report(const roots_result* result, ty_workers* workers)
     put_touch(result, workers, &out);
     ty_sink_format(&out, ", \"coverage\": %.4f", coverage(result));
     put_angles(result, &out);
+    roots_compare(result, workers, &out);
     ty_sink_format(&out,
                    ",\n \"vertices\": %u, \"triangles\": %u, \"shells\": %u, \"closed\": %s, \"boundary_edges\": %u, "
                    "\"nonmanifold_edges\": %u, \"area\": %.6g, \"volume\": %.6g",

@@ -93,6 +93,20 @@ typedef struct ty_roots_cover_def
     float radius;  // m
 } ty_roots_cover_def;
 
+// By what roots find their way over the host.
+typedef enum ty_roots_method
+{
+    TY_ROOTS_WRAP, // tips led by the field, branches drawn tight over it
+    TY_ROOTS_SEED, // as in Homma's thesis of 2011, with what fails there
+} ty_roots_method;
+
+// Of the thesis' method alone.
+typedef struct ty_roots_thesis_def
+{
+    float unit; // of the radius: the unit of the thesis' lengths, which are plain numbers
+    float fall; // weight of down in a main root's way, 1 as printed
+} ty_roots_thesis_def;
+
 // The same roots as they come about, as frames.
 typedef struct ty_roots_grow_def
 {
@@ -102,6 +116,8 @@ typedef struct ty_roots_grow_def
 
 typedef struct ty_roots_recipe
 {
+    int method; // ty_roots_method
+    ty_roots_thesis_def thesis;
     ty_roots_host_def host;
     ty_param_list obstacles; // of ty_roots_object_def: what roots keep clear of
     ty_roots_start_def start;
