@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Folders that become visible only when all their files are there.
+// Folders that become visible only when all their files are there, and folders of files that only save time.
 #include "file_pending.h"
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <tsuya/base/file.h>
+#include <tsuya/base/memory.h>
 #include <unistd.h>
 
 enum
@@ -44,6 +46,75 @@ void ty_folder_remove(const char* path)
     close(fd);
     (void)rmdir(path);
 }
+
+// --- files that only save time ---
+
+typedef struct kept_file
+{
+    char* name;
+    struct timespec touched;
+    uint64_t size;
+} kept_file;
+
+static int longest_untouched(const void* a, const void* b)
+{
+    const kept_file *x = a, *y = b;
+    if (x->touched.tv_sec != y->touched.tv_sec)
+        return x->touched.tv_sec < y->touched.tv_sec ? -1 : 1;
+    if (x->touched.tv_nsec != y->touched.tv_nsec)
+        return x->touched.tv_nsec < y->touched.tv_nsec ? -1 : 1;
+    return strcmp(x->name, y->name);
+}
+
+static kept_file* kept_list(DIR* folder, const char* extension, int* count)
+{
+    kept_file* files = NULL;
+    int room = 0;
+    *count = 0;
+    for (const struct dirent* entry; (entry = readdir(folder));)
+    {
+        struct stat info;
+        if (entry->d_name[0] == '.' || strcmp(ty_path_extension(entry->d_name), extension) != 0 ||
+            fstatat(dirfd(folder), entry->d_name, &info, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISREG(info.st_mode))
+            continue;
+        if (*count == room)
+        {
+            files = ty_grow(files, (size_t)room, (size_t)room + 64, sizeof(kept_file));
+            room += 64;
+        }
+        files[(*count)++] = (kept_file){ty_string_copy(entry->d_name), info.st_mtim, (uint64_t)info.st_size};
+    }
+    return files;
+}
+
+void ty_folder_trim(const char* folder, const char* extension, uint64_t most)
+{
+    int count;
+    uint64_t sum = 0;
+    DIR* open_folder = opendir(folder);
+    if (!open_folder)
+        return;
+    kept_file* files = kept_list(open_folder, extension, &count);
+    if (count > 0)
+        qsort(files, (size_t)count, sizeof *files, longest_untouched);
+    for (int i = 0; i < count; i++)
+        sum += files[i].size;
+    for (int i = 0; i < count; i++)
+    {
+        if (sum > most && unlinkat(dirfd(open_folder), files[i].name, 0) == 0)
+            sum -= files[i].size;
+        ty_free(files[i].name);
+    }
+    ty_free(files);
+    closedir(open_folder);
+}
+
+void ty_file_touch(const char* path)
+{
+    (void)utimensat(AT_FDCWD, path, NULL, 0);
+}
+
+// --- folders that are complete or absent ---
 
 static ty_status fail_errno(ty_error* error, const char* path)
 {

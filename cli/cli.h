@@ -68,7 +68,8 @@ ty_status ty_usage(const ty_command* command, const char* format, ...) TY_PRINTF
 #define TY_SCENE_OPTIONS                                                                                               \
     {"define", 'D', "NAME=VALUE", "set a variable of the scene (repeatable)"},                                         \
         {"set", 0, "PATH=VALUE", "override any parameter, e.g. camera.vfov=20 (repeatable)"},                          \
-        {"ocio", 0, "FILE", "OpenColorIO configuration"}, {"cache", 0, "FOLDER", "where made assets are kept"},        \
+        {"ocio", 0, "FILE", "OpenColorIO configuration"},                                                              \
+        {"cache", 0, "FOLDER", "where made assets are kept; none: nowhere"},                                           \
         {"texture-cache", 0, "SIZE", "memory for textures, e.g. 512MB (default 1GB)"},                                 \
         {"sandbox", 0, NULL, "allow no file outside the scene's folder"},                                              \
     {                                                                                                                  \

@@ -79,13 +79,13 @@ static void check_cache(json_t* root)
     char folder[TY_PATH_MAX] = "", probe[TY_PATH_MAX], text[TY_PATH_MAX + 1100];
     ty_error error = {0};
     bool ok = ty_scene_cache_folder(NULL, folder, &error) == TY_OK;
-    if (ok)
+    if (ok && folder[0])
     {
         ty_path_join(folder, ".probe", probe);
         ok = ty_file_write(probe, "", 0, &error) == TY_OK;
         remove(probe);
     }
-    snprintf(text, sizeof text, "%s%s%s", folder, ok ? "" : ": ", ok ? "" : error.text);
+    snprintf(text, sizeof text, "%s%s%s", ok && !folder[0] ? "none" : folder, ok ? "" : ": ", ok ? "" : error.text);
     add(root, "cache", ok, text);
 }
 

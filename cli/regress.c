@@ -524,7 +524,7 @@ static const ty_option options[] = {
     {"output", 'o', "FOLDER", "keep the rendered pictures there"},
     {"json", 0, NULL, "results as JSON on standard output"},
     {"ocio", 0, "FILE", "OpenColorIO configuration"},
-    {"cache", 0, "FOLDER", "where made assets are kept"},
+    {"cache", 0, "FOLDER", "where made assets are kept; none: nowhere"},
     {"sandbox", 0, NULL, "allow no file outside the scenes' folders"},
     {"isa", 0, "NAME", "pin the CPU kernels: sse2, sse4.2, avx, avx2, avx512"},
     {"threads", 't', "N", "worker threads (default: all cores)"},

@@ -12,6 +12,10 @@
 ty_status ty_scene_cache_folder(const char* given, char* out, ty_error* error)
 {
     const char *own = getenv("TSUYA_CACHE"), *xdg = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    const char* said = given ? given : own;
+    out[0] = '\0';
+    if (said && strcmp(said, "none") == 0)
+        return TY_OK;
     if (given)
         ty_path_join(".", given, out);
     else if (own && own[0])
@@ -29,6 +33,7 @@ typedef struct entry
 {
     char path[TY_PATH_MAX];    // the file, or the folder of frames
     char pattern[TY_PATH_MAX]; // of frames
+    char folder[TY_PATH_MAX];  // where it is kept, empty when it is not
     char passing[64];          // folder that goes when the scene has been read; "" = kept
     char key[33];
 } entry;
@@ -125,7 +130,7 @@ static ty_status make_frames(const ty_asset* asset, const entry* e, ty_workers* 
     if (status != TY_OK)
         return status;
     ty_path_join(folder.temporary, frame_name(asset), pattern);
-    status = ty_recipe_write(&asset->recipe, e->key, pattern, workers, error);
+    status = ty_recipe_write(&asset->recipe, e->key, pattern, e->folder[0] ? e->folder : NULL, workers, error);
     if (status == TY_OK)
         return ty_atomic_folder_commit(&folder, error);
     ty_atomic_folder_abort(&folder);
@@ -136,7 +141,8 @@ static ty_status make(const ty_asset* asset, const entry* e, ty_workers* workers
 {
     if (ty_recipe_frames(&asset->recipe) > 0)
         return make_frames(asset, e, workers, error);
-    ty_status status = ty_recipe_write(&asset->recipe, e->key, e->path, workers, error);
+    const char* cache = e->folder[0] ? e->folder : NULL;
+    ty_status status = ty_recipe_write(&asset->recipe, e->key, e->path, cache, workers, error);
     if (status != TY_NOT_AT_REST)
         return status;
     ty_log(TY_LOG_WARNING, "asset '%s' did not come to rest: %s", asset->name, error->text);
@@ -144,19 +150,23 @@ static ty_status make(const ty_asset* asset, const entry* e, ty_workers* workers
 }
 
 // Where an asset goes. A cache that cannot be written costs time, not the picture: then it lives in a folder of its
-// own.
+// own, as without a cache.
 static ty_status entry_place(const ty_scene_options* options, const ty_asset* asset, entry* e, ty_error* error)
 {
     static const char* const extensions[] = {"glb", "ply", "frames"};
-    char folder[TY_PATH_MAX], file[64];
+    char file[64];
+    const char* folder = e->folder;
     ty_error reason = {0}; // of a warning: not the caller's
-    if (ty_scene_cache_folder(options->cache_folder, folder, &reason) != TY_OK || access(folder, W_OK) != 0)
+    bool there = ty_scene_cache_folder(options->cache_folder, e->folder, &reason) == TY_OK;
+    if (!there || !e->folder[0] || access(e->folder, W_OK) != 0)
     {
-        snprintf(e->passing, sizeof(e->passing), "/tmp/tsuya-XXXXXX");
+        if (!there || e->folder[0])
+            ty_log(TY_LOG_WARNING, "made assets cannot be kept (%s)", there ? "read-only folder" : reason.text);
+        snprintf(e->passing, sizeof(e->passing), TY_SCENE_PASSING);
         if (!mkdtemp(e->passing))
             return ty_error_set(error, TY_BAD_FILE, "neither the folder of made assets nor /tmp can be written");
-        ty_log(TY_LOG_WARNING, "made assets cannot be kept (%s)", reason.text[0] ? reason.text : "read-only folder");
-        snprintf(folder, sizeof(folder), "%s", e->passing);
+        e->folder[0] = '\0';
+        folder = e->passing;
     }
     snprintf(file, sizeof(file), "%s.%s", e->key,
              extensions[ty_recipe_frames(&asset->recipe) > 0 ? TY_PRODUCT_FRAMES : asset->recipe.generator->product]);

@@ -209,7 +209,7 @@ void ty_load_assets(ty_loader* loader)
     struct ty_scene_resources* resources = loader->scene->resources;
     resources->meshes = TY_ARENA_ALLOC(loader->arena, ty_mesh*, loader->asset_count);
     resources->aggregates = TY_ARENA_ALLOC(loader->arena, ty_aggregate*, loader->asset_count);
-    resources->passing = TY_ARENA_ALLOC(loader->arena, const char*, loader->asset_count);
+    resources->passing = TY_ARENA_ALLOC(loader->arena, const char*, loader->asset_count + 1); // and one of images
     int before = loader->errors->count;
     load_meshes(loader);
     for (int i = 0; i < loader->asset_count; ++i)

@@ -3,6 +3,7 @@
 // file go to the cache of made assets, named by their content.
 #include "loader.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <tsuya/base/hash.h>
 
@@ -10,10 +11,28 @@
 
 // --- images ---
 
+// Where nothing is kept: a folder that goes with the scene, the last of those.
+static ty_status passing_folder(ty_loader* loader, char folder[TY_PATH_MAX], ty_error* error)
+{
+    struct ty_scene_resources* resources = loader->scene->resources;
+    char parent[] = TY_SCENE_PASSING;
+    if (!resources->images)
+    {
+        if (!mkdtemp(parent))
+            return ty_error_set(error, TY_BAD_FILE, "no place for the images of a glTF file: /tmp cannot be written");
+        resources->images = ty_arena_format(loader->arena, "%s/images", parent);
+        resources->passing[resources->passing_count++] = resources->images;
+    }
+    snprintf(folder, TY_PATH_MAX, "%s", resources->images);
+    return ty_folder_create(folder, error);
+}
+
 static const char* cached_image(ty_loader* loader, const ty_gltf_image* image, ty_error* error)
 {
     char folder[TY_PATH_MAX], name[64], path[TY_PATH_MAX], hex[33];
     ty_status status = ty_scene_cache_folder(loader->options->cache_folder, folder, error);
+    if (status == TY_OK && !folder[0])
+        status = passing_folder(loader, folder, error);
     if (status != TY_OK)
         return NULL;
     ty_hasher* hasher = ty_hasher_create();

@@ -104,6 +104,8 @@ typedef struct ty_texture_entry
     ty_place place;
 } ty_texture_entry;
 
+#define TY_SCENE_PASSING "/tmp/tsuya-XXXXXX" // a folder for what is not kept
+
 // What a scene owns besides its public arrays.
 struct ty_scene_resources
 {
@@ -113,8 +115,9 @@ struct ty_scene_resources
     struct ty_mesh_sequence** sequences;
     int sequence_count;
     int mesh_count, aggregate_count, gltf_count;
-    const char** passing; // folders of frames that could not be kept, removed at the end
+    const char** passing; // folders of frames and images that are not kept, removed at the end
     int passing_count;
+    const char* images; // the one of images, NULL = none
     uint32_t depth_field_count;
     char* recipe;             // what ty_scene.recipe points to, owned
     struct ty_loader* loader; // owned; NULL until the scene is complete
@@ -198,10 +201,10 @@ bool ty_recipe_read(ty_loader* loader, ty_node* node, const char* place, ty_reci
 // The frames that it makes will have that channel; false after a report.
 bool ty_recipe_bring_channel(ty_loader* loader, ty_recipe* recipe, const ty_node* channel);
 char* ty_recipe_text(const ty_recipe* recipe); // a complete recipe file; caller frees
-// Runs the generator and writes what it makes, with its recipe and hash: a .glb, a .ply, or frames by a pattern.
-// TY_NOT_AT_REST when that is complete but not at rest.
-TY_CHECKED ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* output, ty_workers* workers,
-                                     ty_error* error);
+// Runs the generator and writes what it makes, with its recipe and hash: a .glb, a .ply, or frames by a pattern. cache:
+// a folder for what another run can use, or NULL. TY_NOT_AT_REST when what was asked for is complete but not at rest.
+TY_CHECKED ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* output, const char* cache,
+                                     ty_workers* workers, ty_error* error);
 TY_CHECKED ty_status ty_recipe_key(const ty_recipe* recipe, ty_files* files, char key[33], ty_error* error);
 
 // frame_write.c: a frame of a generator, Y or R, G, B in ACEScg, by the ending: .exr, or .png as sRGB shows it.

@@ -273,49 +273,57 @@ static ty_status write_growth(void* context, int frame, ty_mesh* mesh, ty_error*
 static ty_status write_beside(const ty_made* made, const ty_scene_options* options, ty_error* error)
 {
     ty_status status = TY_OK;
-    if (made->curves && options)
+    if (made->curves)
         status = ty_file_write(options->curves, made->curves, strlen(made->curves), error);
-    if (status == TY_OK && made->host && options)
+    if (status == TY_OK && made->host)
         status = ty_mesh_export(options->host, made->host, error);
     return status;
 }
 
-// partial: an aggregate that was interrupted and holds its state is written as well. options: where else frames,
-// their state and a report go; NULL = nowhere.
-static ty_status write_made(const ty_recipe* recipe, const char* key, const char* output, const ty_color* color,
-                            const ty_bytes* state, const ty_scene_options* options, bool partial, ty_workers* workers,
-                            ty_error* error)
+// Where what is made goes, and what it is made from besides the recipe.
+typedef struct making
 {
+    const char *key, *output;
+    const char* cache;               // for what another run can use; NULL = none
+    const ty_color* color;           // NULL: frames are EXR files
+    const ty_bytes* state;           // to go on from, or NULL
+    const ty_scene_options* options; // where else frames, their state and a report go; NULL = nowhere
+    bool partial;                    // an aggregate that was interrupted and holds its state is written as well
+} making;
+
+static ty_status write_made(const ty_recipe* recipe, const making* m, ty_workers* workers, ty_error* error)
+{
+    const ty_scene_options none = {0}, *options = m->options ? m->options : &none;
     char* text = ty_recipe_text(recipe);
-    ty_frame_volume volume = {.path = options ? options->volume : NULL};
+    ty_frame_volume volume = {.path = options->volume};
     if (volume.path)
         volume.depth = recipe->generator->frame_count(recipe->def);
-    frame_writer writer = {output, text, key, color, options ? options->picture : NULL, options ? options->state : NULL,
-                           &volume};
-    ty_made made = {.frames = {write_frame, writer.state ? write_state : NULL, &writer}, .state = state};
-    if (recipe->generator->product == TY_PRODUCT_AGGREGATE && ty_path_is_sequence(output))
+    frame_writer writer = {m->output, text, m->key, m->color, options->picture, options->state, &volume};
+    ty_made made = {
+        .frames = {write_frame, writer.state ? write_state : NULL, &writer}, .state = m->state, .cache = m->cache};
+    if (recipe->generator->product == TY_PRODUCT_AGGREGATE && ty_path_is_sequence(m->output))
         made.film = (ty_aggregate_sink){write_film, &writer};
-    if (recipe->generator->product == TY_PRODUCT_MESH && ty_path_is_sequence(output))
+    if (recipe->generator->product == TY_PRODUCT_MESH && ty_path_is_sequence(m->output))
         made.growth = (ty_mesh_sink){write_growth, &writer};
-    made.wants_report = options && options->report;
-    made.wants_curves = options && options->curves;
-    made.wants_host = options && options->host;
+    made.wants_report = options->report != NULL;
+    made.wants_curves = options->curves != NULL;
+    made.wants_host = options->host != NULL;
     ty_status status = recipe->generator->make(recipe->def, workers, &made, error), written = TY_OK;
     ty_error write_error = {0};
     written = ty_frame_volume_end(&volume, status == TY_OK, &write_error);
-    if (made.report && options && options->report)
+    if (made.report && options->report)
         *options->report = made.report;
     else
         ty_free(made.report);
-    if (made.aggregate && (status != TY_INTERRUPTED || partial))
+    if (made.aggregate && (status != TY_INTERRUPTED || m->partial))
     {
-        sign(&made.aggregate->recipe, &made.aggregate->hash, ty_string_copy(text), key);
-        written = ty_aggregate_export(output, made.aggregate, false, &write_error);
+        sign(&made.aggregate->recipe, &made.aggregate->hash, ty_string_copy(text), m->key);
+        written = ty_aggregate_export(m->output, made.aggregate, false, &write_error);
     }
     if (made.mesh)
     {
-        sign(&made.mesh->recipe, &made.mesh->hash, ty_string_copy(text), key);
-        written = ty_mesh_export(output, made.mesh, &write_error);
+        sign(&made.mesh->recipe, &made.mesh->hash, ty_string_copy(text), m->key);
+        written = ty_mesh_export(m->output, made.mesh, &write_error);
     }
     if (status == TY_OK && written == TY_OK)
         written = write_beside(&made, options, &write_error);
@@ -332,10 +340,10 @@ static ty_status write_made(const ty_recipe* recipe, const char* key, const char
     return written;
 }
 
-ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* output, ty_workers* workers,
-                          ty_error* error)
+ty_status ty_recipe_write(const ty_recipe* recipe, const char* key, const char* output, const char* cache,
+                          ty_workers* workers, ty_error* error)
 {
-    return write_made(recipe, key, output, NULL, NULL, NULL, false, workers, error);
+    return write_made(recipe, &(making){.key = key, .output = output, .cache = cache}, workers, error);
 }
 
 // The recipe file as the root of a loader, read; false after reports.
@@ -381,9 +389,13 @@ static ty_status make_and_write(ty_loader* loader, const ty_recipe* recipe, int 
     if (resume)
         status = recipe->generator->product == TY_PRODUCT_AGGREGATE ? ty_aggregate_read_state(resume, &state, error)
                                                                     : ty_file_read(resume, MOST_STATE, &state, error);
+    char cache[TY_PATH_MAX];
+    ty_error unkept; // costs time, not the asset
+    bool keeps = ty_scene_cache_folder(loader->options->cache_folder, cache, &unkept) == TY_OK && cache[0];
+    const making m = {key, output, keeps ? cache : NULL, loader->scene->color, resume ? &state : NULL, loader->options,
+                      true};
     if (status == TY_OK)
-        status = write_made(recipe, key, output, loader->scene->color, resume ? &state : NULL, loader->options, true,
-                            loader->options->workers, error);
+        status = write_made(recipe, &m, loader->options->workers, error);
     ty_bytes_term(&state);
     return status;
 }

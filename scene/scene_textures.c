@@ -148,7 +148,8 @@ static bool create_cache(ty_loader* loader)
     char folder[TY_PATH_MAX];
     const ty_scene_options* options = loader->options;
     ty_error error;
-    bool keeps = !options->check_only && ty_scene_cache_folder(options->cache_folder, folder, &error) == TY_OK;
+    bool keeps =
+        !options->check_only && ty_scene_cache_folder(options->cache_folder, folder, &error) == TY_OK && folder[0];
     const ty_mip_cache_def def = {keeps ? folder : NULL,
                                   options->texture_bytes ? options->texture_bytes : TY_MIP_CACHE_BYTES};
     if (ty_mip_cache_create(&def, loader->scene->color, &loader->scene->texture_cache, &error) == TY_OK)

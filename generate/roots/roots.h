@@ -28,9 +28,10 @@ typedef struct roots_host
     float floor; // y
 } roots_host;
 
-// On failure *out is zeroed. The same bits for any workers, which may be NULL.
-TY_CHECKED ty_status roots_host_init(const ty_roots_recipe* recipe, ty_workers* workers, roots_host* out,
-                                     ty_error* error);
+// cache: where fields are kept from one run to the next, NULL = nowhere. On failure *out is zeroed. The same bits for
+// any workers, which may be NULL.
+TY_CHECKED ty_status roots_host_init(const ty_roots_recipe* recipe, const char* cache, ty_workers* workers,
+                                     roots_host* out, ty_error* error);
 void roots_host_term(roots_host* host);
 // Signed distance to host and floor from the field, with its gradient, which is not quite unit (NULL is allowed). Any
 // thread.

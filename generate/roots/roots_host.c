@@ -3,11 +3,6 @@
 #include "roots_host.h"
 #include <tsuya/base/log.h>
 
-enum
-{
-    MARGIN = 8, // steps of the field about the mesh
-};
-
 static ty_status world_make(roots_host* host, ty_error* error)
 {
     ty_world_def def = ty_world_def_default();
@@ -17,30 +12,24 @@ static ty_status world_make(roots_host* host, ty_error* error)
     return status == TY_OK ? ty_world_commit(host->world, error) : status;
 }
 
-static float longest_of(const ty_mesh* mesh)
+float host_longest(const ty_mesh* mesh)
 {
     ty_vec3 size = ty_sub(mesh->bounds.high, mesh->bounds.low);
     return ty_max(size.x, ty_max(size.y, size.z));
 }
 
-static ty_status field_make(const ty_mesh* mesh, int resolution, ty_workers* workers, ty_voxels* out, int32_t** nearest,
-                            ty_error* error)
-{
-    float step = longest_of(mesh) / (float)resolution;
-    return ty_voxels_around_mesh(mesh, step, MARGIN * step, workers, out, nearest, error);
-}
-
 // A root as thick as its host has nothing to hold on to.
 static ty_status radius_check(const ty_roots_recipe* recipe, const ty_mesh* mesh, ty_error* error)
 {
-    float most = longest_of(mesh);
+    float most = host_longest(mesh);
     if (recipe->radius <= most)
         return TY_OK;
     return ty_error_set(error, TY_BAD_INPUT, "radius: %g mm; at most %g mm, the host's longest side",
                         (double)recipe->radius * 1e3, (double)most * 1e3);
 }
 
-static ty_status obstacles_make(const ty_roots_recipe* recipe, ty_workers* workers, roots_host* out, ty_error* error)
+static ty_status obstacles_make(const ty_roots_recipe* recipe, const char* cache, ty_workers* workers, roots_host* out,
+                                ty_error* error)
 {
     ty_mesh* mesh;
     if (recipe->obstacles.count == 0)
@@ -48,15 +37,17 @@ static ty_status obstacles_make(const ty_roots_recipe* recipe, ty_workers* worke
     ty_status status = host_objects_make("obstacles", &recipe->obstacles, &mesh, error);
     if (status != TY_OK)
         return status;
-    status = field_make(mesh, recipe->host.resolution, workers, &out->obstacles, NULL, error);
+    status = host_field_make(mesh, recipe->host.resolution, cache, workers, &out->obstacles, NULL, error);
     ty_mesh_destroy(mesh);
     return status;
 }
 
-ty_status roots_host_init(const ty_roots_recipe* recipe, ty_workers* workers, roots_host* out, ty_error* error)
+ty_status roots_host_init(const ty_roots_recipe* recipe, const char* cache, ty_workers* workers, roots_host* out,
+                          ty_error* error)
 {
     const ty_roots_host_def* def = &recipe->host;
     int32_t* nearest = NULL;
+    bool painted = (def->avoid && def->avoid[0]) || (def->attract && def->attract[0]);
     double start = ty_time_now();
     *out = (roots_host){.has_floor = def->floor};
     ty_status status = host_mesh_make(def, &out->mesh, error);
@@ -65,17 +56,17 @@ ty_status roots_host_init(const ty_roots_recipe* recipe, ty_workers* workers, ro
     if (status == TY_OK)
         status = world_make(out, error);
     if (status == TY_OK)
-        status = field_make(out->mesh, def->resolution, workers, &out->field, &nearest, error);
+        status =
+            host_field_make(out->mesh, def->resolution, cache, workers, &out->field, painted ? &nearest : NULL, error);
     if (status == TY_OK)
         status = host_masks_make(out, def, nearest, workers, error);
     ty_free(nearest);
     if (status == TY_OK)
-        status = obstacles_make(recipe, workers, out, error);
+        status = obstacles_make(recipe, cache, workers, out, error);
     if (status == TY_OK)
     {
         out->floor = out->mesh->bounds.low.y + def->floor_height;
-        ty_log(TY_LOG_INFO, "roots: host of %u triangles, field of %d x %d x %d in %.1f s", out->mesh->triangle_count,
-               out->field.size[0], out->field.size[1], out->field.size[2], ty_time_now() - start);
+        ty_log(TY_LOG_INFO, "roots: host of %u triangles in %.2f s", out->mesh->triangle_count, ty_time_now() - start);
     }
     else
         roots_host_term(out);

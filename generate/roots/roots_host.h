@@ -8,6 +8,13 @@ TY_CHECKED ty_status host_mesh_make(const ty_roots_host_def* def, ty_mesh** out,
 // Objects as one mesh; where: the list's name, for messages.
 TY_CHECKED ty_status host_objects_make(const char* where, const ty_param_list* objects, ty_mesh** out, ty_error* error);
 
+// The longest side of its bounds, m.
+float host_longest(const ty_mesh* mesh);
+// The field of the mesh with so many steps along its longest side, from the folder where it was kept, or made and kept
+// there; NULL: neither. nearest as of ty_voxels_around_mesh. The same bits either way.
+TY_CHECKED ty_status host_field_make(const ty_mesh* mesh, int resolution, const char* cache, ty_workers* workers,
+                                     ty_voxels* out, int32_t** nearest, ty_error* error);
+
 // One number at each vertex.
 typedef struct host_channel
 {

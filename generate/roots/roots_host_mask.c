@@ -147,18 +147,12 @@ float roots_host_mask(const roots_host* host, roots_mask which, ty_vec3 p, ty_ve
 
 // --- starts ---
 
-static float longest_of(const roots_host* host)
-{
-    ty_vec3 size = ty_sub(host->mesh->bounds.high, host->mesh->bounds.low);
-    return ty_max(size.x, ty_max(size.y, size.z));
-}
-
 // A given place put on the surface, where it is near.
 static ty_status point_place(const roots_host* host, const ty_roots_recipe* recipe, int index, roots_start* out,
                              ty_error* error)
 {
     ty_vec3 p = ((const ty_vec3*)recipe->start.points.items)[index];
-    float far = 0.1f * longest_of(host), deep = ty_max(recipe->radius, 2.0f * host->field.step);
+    float far = 0.1f * host_longest(host->mesh), deep = ty_max(recipe->radius, 2.0f * host->field.step);
     float d = roots_host_exact(host, p, far, &out->n);
     if (!(d <= far))
         return ty_error_set(error, TY_BAD_INPUT, "start.points[%d]: [%g, %g, %g] is %.3g m from the host; at most %.3g",

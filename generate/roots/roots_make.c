@@ -309,7 +309,7 @@ ty_status ty_roots_make_all(const void* def, ty_workers* workers, ty_made* out, 
         status = roots_curves_read(recipe->curves, &network, error);
     double begun = ty_time_now();
     if (status == TY_OK)
-        status = roots_host_init(recipe, workers, &host, error);
+        status = roots_host_init(recipe, out->cache, workers, &host, error);
     if (status != TY_OK)
     {
         roots_network_term(&network);

@@ -402,6 +402,39 @@ static void test_paths(void** state)
     assert_string_equal(out, "");
 }
 
+static void touch_at(const char* name, time_t seconds)
+{
+    write_plain(name, "0123456789");
+    const struct timespec times[2] = {{seconds, 0}, {seconds, 0}};
+    assert_int_equal(utimensat(AT_FDCWD, at(name), times, 0), 0);
+}
+
+static void test_trim(void** state)
+{
+    (void)state;
+    char whole[TY_PATH_MAX];
+    touch_at("c.kept", 3000);
+    touch_at("a.kept", 4000);
+    touch_at("b.kept", 1000);
+    touch_at("d.kept", 2000);
+    touch_at("old.ply", 500);
+    touch_at(".b.kept", 100); // somebody writes it
+    assert_int_equal(mkdir(at("folder.kept"), 0777), 0);
+    ty_folder_trim(folder, "kept", 40);
+    assert_int_equal(entries_of(folder), 7);
+    ty_file_touch(at("b.kept")); // used just now
+    ty_folder_trim(folder, "kept", 29);
+    assert_int_equal(entries_of(folder), 5);
+    assert_true(ty_file_exists(at("a.kept")) && ty_file_exists(at("b.kept")));
+    assert_true(ty_file_exists(at("old.ply")) && ty_folder_exists(at("folder.kept")));
+    ty_folder_trim(folder, "kept", 0);
+    assert_int_equal(entries_of(folder), 3);
+    snprintf(whole, sizeof whole, "%s", at("nowhere"));
+    ty_folder_trim(whole, "kept", 0);
+    ty_file_touch(whole);
+    assert_false(ty_file_exists(whole));
+}
+
 #define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove)
 
 static void assert_frame(const char* pattern, int frame, const char* expected)
@@ -488,6 +521,7 @@ int main(void)
         IN_FOLDER(test_failed_write_leaves_the_old),
         IN_FOLDER(test_folder_create),
         IN_FOLDER(test_folders_are_whole),
+        IN_FOLDER(test_trim),
         cmocka_unit_test(test_paths),
         cmocka_unit_test(test_sequences),
     };

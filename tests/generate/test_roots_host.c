@@ -11,7 +11,7 @@ static roots_host host_of(const ty_roots_recipe* recipe)
 {
     roots_host host;
     ty_error error = {0};
-    if (roots_host_init(recipe, NULL, &host, &error) != TY_OK)
+    if (roots_host_init(recipe, NULL, NULL, &host, &error) != TY_OK)
         fail_msg("%s", error.text);
     return host;
 }
@@ -20,7 +20,7 @@ static void refused(const ty_roots_recipe* recipe, const char* text)
 {
     roots_host host;
     ty_error error = {0};
-    assert_int_not_equal(roots_host_init(recipe, NULL, &host, &error), TY_OK);
+    assert_int_not_equal(roots_host_init(recipe, NULL, NULL, &host, &error), TY_OK);
     assert_null(host.mesh);
     if (!strstr(error.text, text))
         fail_msg("no '%s' in: %s", text, error.text);

@@ -15,7 +15,7 @@ typedef struct grown
 static void grow(const ty_roots_recipe* recipe, grown* out)
 {
     ty_error error = {0};
-    ty_status status = roots_host_init(recipe, NULL, &out->host, &error);
+    ty_status status = roots_host_init(recipe, NULL, NULL, &out->host, &error);
     if (status == TY_OK)
         status = roots_grow(recipe, &out->host, NULL, &out->net, &error);
     if (status != TY_OK)

@@ -56,7 +56,7 @@ typedef struct grown
 static void grow(const ty_roots_recipe* recipe, ty_workers* workers, grown* out)
 {
     ty_error error = {0};
-    ty_status status = roots_host_init(recipe, workers, &out->host, &error);
+    ty_status status = roots_host_init(recipe, NULL, workers, &out->host, &error);
     if (status == TY_OK)
         status = roots_grow(recipe, &out->host, workers, &out->net, &error);
     if (status != TY_OK)

@@ -57,6 +57,11 @@ TY_CHECKED ty_status ty_folder_create(const char* path, ty_error* error); // wit
 // Removes a folder and the files in it; folders in it are left, and it with them. Links are not followed.
 void ty_folder_remove(const char* path);
 
+// Files that only save time: takes the regular ones with that extension from a folder, those untouched for longest
+// first, until the others hold at most `most` bytes together. What cannot be read or removed stays.
+void ty_folder_trim(const char* folder, const char* extension, uint64_t most);
+void ty_file_touch(const char* path); // it has been used now; without the right to say so nothing happens
+
 bool ty_file_exists(const char* path); // a regular file
 bool ty_folder_exists(const char* path);
 const char* ty_path_extension(const char* path); // "exr", without the dot; "" if none

@@ -52,6 +52,7 @@ typedef struct ty_made
     char* curves; // of roots, where they are wanted: their centre lines, an ASCII PLY; the same
     ty_mesh* host; // of roots, the same: what they hold on to, in its place
     bool wants_report, wants_curves, wants_host;
+    const char* cache; // given: a folder for what is costly and the same in another run; NULL = none
     const ty_bytes*
         state; // given where the making of an aggregate or of frames goes on from one that is kept; else NULL
 } ty_made;

@@ -282,7 +282,7 @@ typedef struct ty_scene_options
     int variable_count;
     const char* ocio;         // --ocio or NULL
     const char* isa;          // --isa or NULL
-    const char* cache_folder; // NULL = $TSUYA_CACHE, else $XDG_CACHE_HOME/tsuya, else ~/.cache/tsuya
+    const char* cache_folder; // NULL = $TSUYA_CACHE, else $XDG_CACHE_HOME/tsuya, else ~/.cache/tsuya; "none": none
     uint64_t texture_bytes;   // of textures in memory at a time; 0 = TY_MIP_CACHE_BYTES. Changes no picture.
     bool sandbox;             // no path outside the scene's folder
     bool quick;               // half size and 16 samples, as overrides before all others
@@ -341,14 +341,14 @@ static inline uint32_t ty_scene_material_at(const ty_scene_object* object, uint3
     return object->slot_materials ? object->slot_materials[k] : object->material;
 }
 
-// Makes the asset of a recipe file and writes it to output, without the cache: an aggregate to a .glb, a mesh to a
-// .ply, .obj or .glb (with #### its growth), frames to a pattern with ####. kind (NULL = any) is what the recipe has to
-// be. element: above 0 = of an aggregate's elements this one alone, as a .ply.
+// Makes the asset of a recipe file and writes it to output, whether or not it is in the cache: an aggregate to a .glb,
+// a mesh to a .ply, .obj or .glb (with #### its growth), frames to a pattern with ####. kind (NULL = any) is what the
+// recipe has to be. element: above 0 = of an aggregate's elements this one alone, as a .ply.
 TY_CHECKED ty_status ty_recipe_make(const char* recipe, const char* kind, const char* output, int element,
                                     const ty_scene_options* options, ty_error_list* errors);
 
 // The folder of made assets: given (may be NULL), else $TSUYA_CACHE, else $XDG_CACHE_HOME/tsuya, else ~/.cache/tsuya.
-// Created when missing; out has TY_PATH_MAX bytes.
+// Created when missing; out has TY_PATH_MAX bytes. "none" for the first or second: nothing is kept, and out is empty.
 TY_CHECKED ty_status ty_scene_cache_folder(const char* given, char* out, ty_error* error);
 
 // Every table there is, for `tsuya params`, the schema and the reference.
