@@ -152,7 +152,7 @@ static void pairs_about_a_pillar(void** state)
         roots_host on;
         ty_error error;
         recipe.host.floor = false;
-        assert_int_equal(roots_host_init(&recipe, NULL, &on, &error), TY_OK);
+        assert_int_equal(roots_host_init(&recipe, NULL, NULL, &on, &error), TY_OK);
         const growth g = {.recipe = &recipe, .host = &on};
         const seed_run run = {.g = &g, .unit = 1e-3f, .r = 2e-3f};
         int failed[ROOTS_FAILURES + 1] = {0};
