@@ -40,6 +40,8 @@ void ty_mesh_destroy(ty_mesh* mesh)
     ty_free(mesh->curvature_1);
     ty_free(mesh->curvature_2);
     ty_free(mesh->direction_1);
+    ty_free(mesh->step_positions);
+    ty_free(mesh->step_normals);
     ty_free(mesh->recipe);
     ty_free(mesh->hash);
     ty_free(mesh);
@@ -68,6 +70,8 @@ ty_mesh* ty_mesh_copy(const ty_mesh* mesh)
     copy->curvature_1 = copy_array(mesh->curvature_1, n, sizeof(float));
     copy->curvature_2 = copy_array(mesh->curvature_2, n, sizeof(float));
     copy->direction_1 = copy_array(mesh->direction_1, n, sizeof(ty_vec3));
+    copy->step_positions = copy_array(mesh->step_positions, n * (size_t)mesh->step_count, sizeof(ty_vec3));
+    copy->step_normals = copy_array(mesh->step_normals, n * (size_t)mesh->step_count, sizeof(ty_vec3));
     copy->recipe = mesh->recipe ? ty_string_copy(mesh->recipe) : NULL;
     copy->hash = mesh->hash ? ty_string_copy(mesh->hash) : NULL;
     copy->attributes = copy_array(mesh->attributes, (size_t)mesh->attribute_count, sizeof(ty_mesh_attribute));
@@ -81,6 +85,29 @@ ty_mesh* ty_mesh_copy(const ty_mesh* mesh)
     for (int i = 0; i < copy->slot_count; i++)
         copy->slot_names[i] = ty_string_copy(mesh->slot_names[i]);
     return copy;
+}
+
+void ty_mesh_forget_steps(ty_mesh* mesh)
+{
+    ty_free(mesh->step_positions);
+    ty_free(mesh->step_normals);
+    mesh->step_positions = mesh->step_normals = NULL;
+    mesh->step_count = 0;
+}
+
+bool ty_mesh_make_steps(ty_mesh* mesh, int step_count)
+{
+    TY_ASSERT(step_count > 1 && step_count <= TY_MESH_MAX_STEPS);
+    ty_mesh_forget_steps(mesh);
+    size_t count = mesh->vertex_count * (size_t)step_count;
+    mesh->step_positions = TY_TRY_ALLOC(ty_vec3, count);
+    mesh->step_normals = TY_TRY_ALLOC(ty_vec3, count);
+    bool enough = mesh->step_positions && mesh->step_normals;
+    if (enough)
+        mesh->step_count = step_count;
+    else
+        ty_mesh_forget_steps(mesh);
+    return enough;
 }
 
 // In double: coordinates near the float limit would overflow in the product.

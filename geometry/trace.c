@@ -155,7 +155,7 @@ static RTCGeometry create_instance_geometry(const ty_world* world, const ty_trac
     const ty_trace_prototype* prototype = &world->prototypes[ty_trace_prototype_of(object, instance)];
     bool drifts = object->drifts && object->drifts[instance];
     int count = drifts ? ty_trace_drift_steps(object, instance) : object->step_count;
-    rtcSetGeometryInstancedScene(geometry, prototype->scene);
+    rtcSetGeometryInstancedScene(geometry, object->aggregate ? prototype->scene : ty_trace_scene_of(prototype));
     rtcSetGeometryTimeStepCount(geometry, (unsigned)count);
     for (int i = 0; i < count; i++)
     {
@@ -211,6 +211,11 @@ static float box_area(const ty_trace_object* object)
     return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
+static bool keeps_no_form(const ty_world* world, const ty_trace_object* object)
+{
+    return !object->aggregate && world->prototypes[object->prototypes[0]].moving;
+}
+
 // What the plain objects at rest must be larger than to be Embree's: all of them are when they are few.
 static float largest_of_the_small(const ty_world* world)
 {
@@ -218,7 +223,7 @@ static float largest_of_the_small(const ty_world* world)
     for (uint32_t i = 0; i < world->object_count; i++)
     {
         const ty_trace_object* object = &world->objects[i];
-        if (object->aggregate || object->step_count > 1)
+        if (object->aggregate || object->step_count > 1 || keeps_no_form(world, object))
             continue;
         float area = box_area(object);
         for (int k = 0; k <= LARGE_OBJECTS; k++)
@@ -262,6 +267,8 @@ static ty_status attach_fast(ty_world* world, ty_error* error)
             status = ty_trace_wide_create(world, &i, 1, &object->wide, error);
         if (moves && !object->drifts)
             attach(world, object, ty_trace_create_moving_geometry(world, object), i);
+        else if (keeps_no_form(world, object))
+            attach(world, object, create_instance_geometry(world, object, 0), i);
         else if (!object->aggregate && box_area(object) > small)
             attach(world, object, create_plain_geometry(world, object, &mesh_triangles), i);
         else if (!moves)

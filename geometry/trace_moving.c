@@ -72,7 +72,8 @@ static void intersect_moving(const struct RTCIntersectFunctionNArguments* args)
         const ty_trace_prototype* prototype = &world->prototypes[object->prototypes[0]];
         ty_trace_context inner = {.world = world, .ray = ray, .object = object->index, .instance = 0};
         ty_embree_context_init(&inner.embree);
-        ty_embree_intersect(prototype->scene, &inner.embree, ty_trace_needed_filter(object, ray, 0), &local);
+        ty_embree_intersect(ty_trace_scene_of(prototype), &inner.embree, ty_trace_needed_filter(object, ray, 0),
+                            &local);
     }
     if (local.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return;
@@ -99,7 +100,7 @@ static void occlude_moving(const struct RTCOccludedFunctionNArguments* args)
     const ty_trace_prototype* prototype = &world->prototypes[object->prototypes[0]];
     ty_trace_context inner = {.world = world, .ray = ray, .object = object->index, .instance = 0};
     ty_embree_context_init(&inner.embree);
-    ty_embree_occluded(prototype->scene, &inner.embree, ty_trace_needed_filter(object, ray, 0), &local);
+    ty_embree_occluded(ty_trace_scene_of(prototype), &inner.embree, ty_trace_needed_filter(object, ray, 0), &local);
     if (local.tfar < 0.0f)
         outer->tfar = local.tfar;
 }

@@ -169,5 +169,6 @@ ty_affine ty_world_to_local(const ty_world* world, uint32_t object, uint32_t ins
 
 bool ty_world_is_moving(const ty_world* world, uint32_t object)
 {
-    return world->objects[object].step_count > 1 || world->objects[object].drifts;
+    const ty_trace_object* o = &world->objects[object];
+    return o->step_count > 1 || o->drifts || (!o->aggregate && world->prototypes[o->prototypes[0]].moving);
 }

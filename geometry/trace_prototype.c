@@ -7,20 +7,33 @@
 // Splitting triangles pays for small prototypes; above this many it costs more time than it gives.
 #define HIGH_QUALITY_TRIANGLES 200000u
 
-static ty_status build_prototype_scene(ty_world* world, ty_trace_prototype* prototype, ty_error* error)
+// A copy, since Embree reads 16 bytes at the last vertex. False when it has no memory.
+static bool copy_vertices(RTCGeometry geometry, int step, const ty_vec3* positions, uint32_t count)
 {
-    const ty_mesh* mesh = prototype->mesh;
+    void* out = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, (unsigned)step, RTC_FORMAT_FLOAT3,
+                                        sizeof(ty_vec3), count);
+    if (out)
+        memcpy(out, positions, count * sizeof(ty_vec3));
+    return out != NULL;
+}
+
+// steps: as the mesh stands while the shutter is open; else as it stands at the frame's own moment.
+static ty_status build_prototype_scene(ty_world* world, const ty_mesh* mesh, bool steps, RTCScene* out, ty_error* error)
+{
     RTCScene scene = rtcNewScene(world->device);
     RTCGeometry geometry = rtcNewGeometry(world->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    bool high = mesh->triangle_count <= HIGH_QUALITY_TRIANGLES;
+    bool high = mesh->triangle_count <= HIGH_QUALITY_TRIANGLES, copied = true;
     rtcSetSceneBuildQuality(scene, high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
     rtcSetSceneFlags(scene, TY_EMBREE_FILTER_FLAG);
-    // A copy, since Embree reads 16 bytes at the last vertex; the indices are shared.
-    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(ty_vec3),
-                                              mesh->vertex_count);
-    if (positions)
+    if (steps)
+        rtcSetGeometryTimeStepCount(geometry, (unsigned)mesh->step_count);
+    for (int i = 0; i < (steps ? mesh->step_count : 1) && copied; i++)
+        copied =
+            copy_vertices(geometry, i, steps ? mesh->step_positions + (size_t)i * mesh->vertex_count : mesh->positions,
+                          mesh->vertex_count);
+    if (copied)
     {
-        memcpy(positions, mesh->positions, mesh->vertex_count * sizeof(ty_vec3));
+        // the indices are shared
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh->triangles, 0,
                                    sizeof mesh->triangles[0], mesh->triangle_count);
         rtcCommitGeometry(geometry);
@@ -32,7 +45,7 @@ static ty_status build_prototype_scene(ty_world* world, ty_trace_prototype* prot
     if (status != TY_OK)
         rtcReleaseScene(scene);
     else
-        prototype->scene = scene;
+        *out = scene;
     return status;
 }
 
@@ -77,10 +90,19 @@ ty_status ty_world_add_prototype(ty_world* world, const ty_mesh* mesh, uint32_t*
                                 .from_sphere = ty_affine_identity()};
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
         added.bounds = ty_bounds_add(added.bounds, mesh->positions[i]);
-    ty_status status = build_prototype_scene(world, &added, error);
+    for (size_t i = 0; i < (size_t)mesh->step_count * mesh->vertex_count; i++)
+        added.bounds = ty_bounds_add(added.bounds, mesh->step_positions[i]);
+    ty_status status = build_prototype_scene(world, mesh, false, &added.scene, error);
+    if (status == TY_OK && mesh->step_count > 0)
+    {
+        status = build_prototype_scene(world, mesh, true, &added.moving, error);
+        if (status != TY_OK)
+            rtcReleaseScene(added.scene);
+    }
     if (status != TY_OK)
         return status;
     analyse(mesh, &added.topology);
+    added.topology.convex = added.topology.convex && !added.moving; // at other moments it may not be
     *prototype = free_slot(world);
     world->prototypes[*prototype] = added;
     if (*prototype == world->prototype_count)
@@ -105,6 +127,8 @@ void ty_world_remove_prototype(ty_world* world, uint32_t prototype)
 {
     TY_ASSERT(prototype < world->prototype_count && !is_used(world, prototype));
     rtcReleaseScene(world->prototypes[prototype].scene);
+    if (world->prototypes[prototype].moving)
+        rtcReleaseScene(world->prototypes[prototype].moving);
     ty_free(world->prototypes[prototype].horizons);
     world->prototypes[prototype] = (ty_trace_prototype){0};
     while (world->prototype_count > 0 && !world->prototypes[world->prototype_count - 1].mesh)

@@ -217,14 +217,21 @@ bool ty_world_occluded(const ty_world* world, const ty_ray* ray)
     return r.tfar < 0.0f;
 }
 
+static bool intersect_scene(const ty_world* world, RTCScene scene, float time, ty_vec3 origin, float t_min,
+                            ty_vec3 direction, float t_max, struct RTCRayHit* ray_hit)
+{
+    ray_hit->ray = make_ray(origin, t_min, direction, t_max);
+    ray_hit->ray.time = time;
+    ray_hit->hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    ty_trace_context context = make_context(world, NULL);
+    ty_embree_intersect(scene, &context.embree, NULL, ray_hit);
+    return ray_hit->hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
 static bool intersect_mesh(const ty_world* world, uint32_t prototype, ty_vec3 origin, float t_min, ty_vec3 direction,
                            float t_max, struct RTCRayHit* ray_hit)
 {
-    ray_hit->ray = make_ray(origin, t_min, direction, t_max);
-    ray_hit->hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    ty_trace_context context = make_context(world, NULL);
-    ty_embree_intersect(world->prototypes[prototype].scene, &context.embree, NULL, ray_hit);
-    return ray_hit->hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    return intersect_scene(world, world->prototypes[prototype].scene, 0.0f, origin, t_min, direction, t_max, ray_hit);
 }
 
 bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_t instance, float time, ty_vec3 origin,
@@ -259,7 +266,9 @@ bool ty_world_intersect_instance(const ty_world* world, uint32_t object, uint32_
         direction = ty_map_vector(&map, direction);
     }
     struct RTCRayHit ray_hit;
-    if (!intersect_mesh(world, prototype, origin, 0.0f, direction, t_max, &ray_hit))
+    const ty_trace_prototype* entered = &world->prototypes[prototype];
+    if (!intersect_scene(world, o->aggregate ? entered->scene : ty_trace_scene_of(entered), time, origin, 0.0f,
+                         direction, t_max, &ray_hit))
         return false;
     fill_hit(&ray_hit, object, instance, time, hit);
     return true;

@@ -26,6 +26,15 @@ static inline triple triple_of(const corners* c, const ty_vec3* field)
     return (triple){ty_f4_load(&field[c->v[0]]), ty_f4_load(&field[c->v[1]]), ty_f4_load(&field[c->v[2]])};
 }
 
+// The same of steps, at a time within the shutter.
+static triple triple_at(const corners* c, const ty_vec3* steps, float time)
+{
+    ty_vec3 at[3];
+    for (int i = 0; i < 3; i++)
+        at[i] = ty_trace_step_value(c->mesh, steps, c->v[i], time);
+    return (triple){ty_f4_load(&at[0]), ty_f4_load(&at[1]), ty_f4_load(&at[2])};
+}
+
 static inline ty_f4 blend(const corners* c, const triple* t)
 {
     ty_f4 ab = ty_f4_mad(ty_f4_mul(t->a, ty_f4_set(c->w[0])), t->b, ty_f4_set(c->w[1]));
@@ -103,6 +112,11 @@ void ty_world_surface(const ty_world* world, const ty_hit* hit, ty_surface_point
     ty_f4_columns map = ty_f4_columns_of(to_world), m = cofactors(&map);
     ty_f4 translation = ty_f4_load(&to_world->t);
     triple positions = triple_of(&c, mesh->positions), normals = triple_of(&c, mesh->normals);
+    if (prototype->moving && !object->aggregate)
+    {
+        positions = triple_at(&c, mesh->step_positions, hit->time);
+        normals = triple_at(&c, mesh->step_normals, hit->time);
+    }
     float length, ignored;
     ty_f4 n = triangle_normal(&positions), ng = normalized(ty_f4_map_vector(&m, n), &length);
     ty_f4 ns = normalized(ty_f4_map_vector(&m, blend(&c, &normals)), &ignored);

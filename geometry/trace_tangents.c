@@ -9,8 +9,11 @@ bool ty_world_tangents(const ty_world* world, const ty_surface_point* point, ty_
     if (!mesh->uvs)
         return false;
     const uint32_t* v = mesh->triangles[point->triangle];
-    ty_vec3 p0 = mesh->positions[v[0]];
-    ty_vec3 e1 = ty_sub(mesh->positions[v[1]], p0), e2 = ty_sub(mesh->positions[v[2]], p0);
+    ty_vec3 p[3];
+    bool steps = mesh->step_count > 0 && !world->objects[point->object].aggregate;
+    for (int i = 0; i < 3; i++)
+        p[i] = steps ? ty_trace_step_value(mesh, mesh->step_positions, v[i], point->time) : mesh->positions[v[i]];
+    ty_vec3 e1 = ty_sub(p[1], p[0]), e2 = ty_sub(p[2], p[0]);
     ty_vec2 a = mesh->uvs[v[0]], b = mesh->uvs[v[1]], c = mesh->uvs[v[2]];
     float u1 = b.x - a.x, v1 = b.y - a.y, u2 = c.x - a.x, v2 = c.y - a.y;
     float determinant = u1 * v2 - u2 * v1, scale = 1.0f / determinant;

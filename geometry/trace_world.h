@@ -11,8 +11,9 @@ typedef struct ty_trace_prototype
 {
     const ty_mesh* mesh; // borrowed; NULL = a free slot
     RTCScene scene;      // the mesh in its own space
+    RTCScene moving;     // the same over the open shutter; NULL = it keeps its form
     ty_mesh_topology topology;
-    ty_bounds bounds;      // in its own space
+    ty_bounds bounds;      // in its own space, over the whole shutter
     ty_affine to_sphere;   // carries the bounding ellipsoid to the unit sphere, once the wide level holds it
     ty_affine from_sphere; // its inverse
     bool has_ellipsoid;
@@ -73,6 +74,22 @@ typedef struct ty_trace_context
     const ty_ray* ray;
     uint32_t object, instance; // known below a user geometry; TY_NONE: Embree's instance id tells
 } ty_trace_context;
+
+// What rays of a time meet.
+static inline RTCScene ty_trace_scene_of(const ty_trace_prototype* prototype)
+{
+    return prototype->moving ? prototype->moving : prototype->scene;
+}
+
+// A corner of a mesh with steps, or its normal, as Embree has it.
+static inline ty_vec3 ty_trace_step_value(const ty_mesh* mesh, const ty_vec3* steps, uint32_t vertex, float time)
+{
+    float x = ty_clamp(time, 0.0f, 1.0f) * (float)(mesh->step_count - 1);
+    int k = (int)x;
+    k = k > mesh->step_count - 2 ? mesh->step_count - 2 : k;
+    const ty_vec3* at = &steps[(size_t)k * mesh->vertex_count + vertex];
+    return ty_lerp3(at[0], at[mesh->vertex_count], x - (float)k);
+}
 
 // --- trace.c ---
 // Embree's first error since it was last asked, as a status.

@@ -160,6 +160,7 @@ typedef struct ty_loader
     bool world_changed;  // objects stand elsewhere than in the world
     bool poses_move;     // camera or objects do, while the shutter is open
     bool instances_move; // those of aggregates do by their own velocities, as the world has them
+    bool meshes_move;    // vertices of sequences do
     float shutter[2];    // s, when it opens and closes, from the frame's moment
     int focus_object;    // of the camera, -1 = none
     int camera_capacity; // of the scene's camera_steps
@@ -281,7 +282,8 @@ void ty_mesh_sequence_read(ty_loader* loader, ty_asset* asset, const ty_mesh_ass
 void ty_mesh_sequence_expect(ty_loader* loader, ty_asset* asset, const ty_mesh_asset_def* def);
 void ty_mesh_sequence_load(ty_loader* loader, ty_asset* asset); // the mesh at the scene's seconds
 void ty_mesh_sequence_destroy(struct ty_mesh_sequence* sequence);
-void ty_set_mesh_times(ty_loader* loader); // to the scene's seconds; what changed is marked
+void ty_set_mesh_times(ty_loader* loader);  // to the scene's seconds; what changed is marked
+void ty_set_mesh_motion(ty_loader* loader); // mesh_motion.c: vertices over the open shutter, once that is known
 bool ty_mesh_has_changed(const ty_loader* loader, const ty_mesh* mesh);
 void ty_complete_mesh(const ty_loader* loader, ty_mesh* mesh); // what shading and tracing expect
 void ty_convert_colors(const ty_loader* loader, ty_mesh* mesh);
@@ -317,4 +319,5 @@ void ty_frame_read_timeline(ty_loader* loader);           // the section alone
 void ty_frame_begin(ty_loader* loader);                   // the sections of time; the tree at the scene's frame
 void ty_frame_check_keys(ty_loader* loader); // reads every keyed entry at every key: ranges hold everywhere then
 void ty_pose_scene(ty_loader* loader);       // scene_motion.c: camera and objects over the open shutter
+void ty_settle_moves(ty_loader* loader);     // whether anything does
 void ty_frame_write_recipe(ty_loader* loader);

@@ -1,21 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Meshes that change with time: files read as they are needed, blended between two where they have one topology.
-#include "loader.h"
+#include "mesh_sequence.h"
 #include <string.h>
 #include <tsuya/geometry/mesh_file.h>
-#include <tsuya/image/mip_texture.h>
-
-typedef struct ty_mesh_sequence
-{
-    const char* pattern;
-    ty_mip_texture_def timing; // path and what is of images unused
-    int first, count;          // numbers of the files
-    ty_mesh* frames[2];        // as read, and which of the files they are; NULL = none yet
-    int loaded[2];
-    int shown[2]; // what the asset's mesh is
-    float weight;
-    bool changed; // since the world was built
-} ty_mesh_sequence;
 
 // --- reading the asset ---
 
@@ -143,8 +130,8 @@ static ty_mesh* read_file(ty_loader* loader, const ty_mesh_sequence* s, int i, c
     return mesh;
 }
 
-// Files a and b into frames[0] and [1]; what is there already stays.
-static bool load_files(ty_loader* loader, ty_mesh_sequence* s, const int wanted[2], const ty_mesh* like, ty_place place)
+bool ty_mesh_sequence_files(ty_loader* loader, ty_mesh_sequence* s, const int wanted[2], const ty_mesh* like,
+                            ty_place place)
 {
     if (s->loaded[0] == wanted[1] || s->loaded[1] == wanted[0])
     {
@@ -172,10 +159,17 @@ static bool load_files(ty_loader* loader, ty_mesh_sequence* s, const int wanted[
 
 // --- blending ---
 
-static void blend_floats(float* out, const float* a, const float* b, size_t count, float weight)
+void ty_mesh_blend_floats(float* out, const float* a, const float* b, size_t count, float weight)
 {
     for (size_t i = 0; i < count; ++i)
         out[i] = a[i] + (b[i] - a[i]) * weight;
+}
+
+void ty_mesh_blend_normals(ty_vec3* out, const ty_mesh* a, const ty_mesh* b, float weight)
+{
+    ty_mesh_blend_floats(&out[0].x, &a->normals[0].x, &b->normals[0].x, 3 * (size_t)a->vertex_count, weight);
+    for (size_t i = 0; i < a->vertex_count; ++i)
+        out[i] = ty_length_sqr(out[i]) > 0.0f ? ty_normalize(out[i]) : a->normals[i];
 }
 
 // Of another topology. Who holds on to the list of attributes finds the new ones in it.
@@ -199,15 +193,13 @@ static void replace(ty_mesh* out, const ty_mesh* from)
 static void blend(ty_mesh* out, const ty_mesh* a, const ty_mesh* b, float weight)
 {
     size_t n = out->vertex_count;
-    blend_floats(&out->positions[0].x, &a->positions[0].x, &b->positions[0].x, 3 * n, weight);
-    blend_floats(&out->normals[0].x, &a->normals[0].x, &b->normals[0].x, 3 * n, weight);
-    for (size_t i = 0; i < n; ++i)
-        out->normals[i] = ty_length_sqr(out->normals[i]) > 0.0f ? ty_normalize(out->normals[i]) : a->normals[i];
+    ty_mesh_blend_floats(&out->positions[0].x, &a->positions[0].x, &b->positions[0].x, 3 * n, weight);
+    ty_mesh_blend_normals(out->normals, a, b, weight);
     if (out->uvs)
-        blend_floats(&out->uvs[0].x, &a->uvs[0].x, &b->uvs[0].x, 2 * n, weight);
+        ty_mesh_blend_floats(&out->uvs[0].x, &a->uvs[0].x, &b->uvs[0].x, 2 * n, weight);
     for (int k = 0; k < out->attribute_count; ++k)
-        blend_floats(out->attributes[k].values, a->attributes[k].values, b->attributes[k].values,
-                     n * (size_t)out->attributes[k].components, weight);
+        ty_mesh_blend_floats(out->attributes[k].values, a->attributes[k].values, b->attributes[k].values,
+                             n * (size_t)out->attributes[k].components, weight);
     ty_free(out->curvature_1);
     ty_free(out->curvature_2);
     ty_free(out->direction_1);
@@ -234,7 +226,7 @@ static bool show(ty_loader* loader, ty_asset* asset)
     bool same_weight = !(weight < s->weight) && !(weight > s->weight);
     if (wanted[0] == s->shown[0] && wanted[1] == s->shown[1] && same_weight)
         return true;
-    if (!load_files(loader, s, wanted, asset->mesh, asset->place))
+    if (!ty_mesh_sequence_files(loader, s, wanted, asset->mesh, asset->place))
         return false;
     if (!asset->mesh)
         asset->mesh = ty_mesh_copy(s->frames[0]);

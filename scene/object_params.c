@@ -176,9 +176,8 @@ static const ty_param loop_rows[] = {
 static const ty_param mesh_rows[] = {
     {"mesh", TY_PARAM_PATH, "", 0, 0, NULL, NULL, offsetof(ty_mesh_asset_def, mesh),
      "a recipe (file or in place), or .ply .obj .stl .fbx .dae .off .glb .gltf (all of it as one); .ply files with "
-     "#### for the number (roots.####.ply) are animated, by what follows; with interpolate: none each may have a "
-     "topology "
-     "of its own",
+     "#### for the number (roots.####.ply) are animated, by what follows, and blur while the shutter is open; with "
+     "interpolate: none each may have a topology of its own, and none blurs",
      true},
     INTERPOLATED_ROWS(ty_mesh_asset_def),
 };

@@ -233,6 +233,7 @@ static void go_to(ty_loader* loader, double frame)
     ty_set_aggregate_times(loader);
     ty_set_mesh_times(loader); // ahead of the poses: a camera may focus on what it shows
     ty_pose_scene(loader);
+    ty_set_mesh_motion(loader);
 }
 
 ty_status ty_scene_set_frame(ty_scene* scene, double frame, ty_error_list* errors)

@@ -104,6 +104,8 @@ static void load_stages(ty_loader* loader, int first)
     if (loader->errors->count > first)
         return;
     ty_pose_scene(loader);
+    if (!loader->options->check_only)
+        ty_set_mesh_motion(loader);
     if (loader->errors->count > first)
         return;
     record_overrides(loader);

@@ -139,6 +139,11 @@ static bool same_camera(const ty_camera_def* a, const ty_camera_def* b)
     return true;
 }
 
+void ty_settle_moves(ty_loader* loader)
+{
+    loader->scene->moves = loader->poses_move || loader->instances_move || loader->meshes_move;
+}
+
 static void settle(ty_loader* loader, int count)
 {
     ty_scene* scene = loader->scene;
@@ -154,7 +159,7 @@ static void settle(ty_loader* loader, int count)
         settle_object(loader, &loader->objects[i], count);
         loader->poses_move |= loader->objects[i].step_count > 1;
     }
-    scene->moves = loader->poses_move || loader->instances_move;
+    ty_settle_moves(loader);
 }
 
 static void pose(ty_loader* loader, ty_moment moment)

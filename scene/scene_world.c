@@ -329,7 +329,7 @@ static bool fill_world(ty_loader* loader)
     loader->instances_move = false;
     for (int i = 0; i < scene->object_count; ++i)
         loader->instances_move |= loader->placed[i].aggregate != NULL && ty_world_is_moving(scene->world, (uint32_t)i);
-    scene->moves = loader->poses_move || loader->instances_move;
+    ty_settle_moves(loader);
     if (ty_world_commit(scene->world, &error) == TY_OK)
         return true;
     ty_error_list_add(loader->errors, &error);

@@ -2,6 +2,7 @@
 // Cameras and motion in whole pictures, against what geometry says: coverage along a path, sizes, brightness of blurs.
 #include "whole_program.h"
 #include <tsuya/geometry/aggregate.h>
+#include <tsuya/geometry/mesh_file.h>
 #include <tsuya/geometry/shape.h>
 
 #define HEAD                                                                                                           \
@@ -118,6 +119,115 @@ static void instances_smear_by_their_velocities(void** state)
     ty_exr_destroy(still);
     ty_exr_destroy(unscaled);
     ty_exr_destroy(closed);
+}
+
+// The same plate as a file a frame: file k stands at x = place of k.
+static void write_plates(const float* places, int count)
+{
+    ty_shape_def def = ty_shape_def_default();
+    def.kind = TY_SHAPE_BOX;
+    def.size = (ty_vec3){0.125f, 1.0f, 0.005f};
+    ty_mesh* plate;
+    ty_error error;
+    assert_int_equal(ty_shape_create(&def, &plate, &error), TY_OK);
+    for (int k = 0; k < count; ++k)
+    {
+        ty_mesh* moved = ty_mesh_copy(plate);
+        ty_affine map = ty_affine_identity();
+        map.t.x = places[k];
+        ty_mesh_transform(moved, &map);
+        char name[32];
+        snprintf(name, sizeof name, "plate.%04d.ply", k);
+        assert_int_equal(ty_ply_write(name, moved, &error), TY_OK);
+        ty_mesh_destroy(moved);
+    }
+    ty_mesh_destroy(plate);
+}
+
+// At frame 1 of the scene, which shows file 1.
+static ty_exr* render_plates(const char* options, const char* camera, const char* translate)
+{
+    char text[4096];
+    snprintf(text, sizeof text,
+             HEAD "timeline: { fps: 24, start: 0, end: 1 }\nassets: { plate: { mesh: 'plate.####.ply', fps: 24%s } }\n"
+                  "materials: { m: { model: surface, base_color: 0, specular_weight: 0 } }\n"
+                  "objects: [ { mesh: plate, material: m, translate: %s } ]\n"
+                  "camera: { projection: orthographic, ortho_height: 0.125, position: [0, 0, 1], look_at: [0, 0, 0], "
+                  "%s }\nlights: [ { type: point, center: [0, 9, 0] } ]\nframe: 1\n",
+             64, 8, 256, "", options, translate, camera);
+    return render_text(text);
+}
+
+// Files a frame apart are a straight path: what the shutter sees of it is the box-filtered plate, and the plate as an
+// object of the same motion.
+static void files_smear_from_one_to_the_next(void** state)
+{
+    (void)state;
+    static const float straight[] = {-0.5f, 0.0f, 0.5f};
+    static const char none[] = "[0, 0, 0]";
+    write_plates(straight, 3);
+    ty_exr* exr = render_plates("", "shutter: 1", none);
+    check_coverage(exr, 0.5);
+    ty_exr_destroy(exr);
+    exr = render_plates("", "shutter: 0.5", none);
+    check_coverage(exr, 0.25);
+    ty_exr_destroy(exr);
+    exr = render_plates("", "shutter: 1, shutter_position: start", "[-0.25, 0, 0]");
+    check_coverage(exr, 0.5);
+    ty_exr_destroy(exr);
+    // the film stops in the middle of the open shutter, and the plate with it: half of the time it stands there
+    exr = render_plates(", last_frame: 1, first_frame: 0", "shutter: 1", none);
+    for (int x = 0; x < 64; ++x)
+    {
+        double way = 0.0, at = (x + 0.5 - 32.0) / 64.0;
+        for (int i = 0; i < 16; ++i)
+            way += coverage(at + (i - 7.5) / 1024.0 + 0.125, 0.25, 0.25) / 16.0;
+        double stands = fabs(at) < 0.12 ? 1.0 : fabs(at) > 0.13 ? 0.0 : 0.5, expected = 0.5 * (way + stands);
+        if (fabs((double)pixel(exr, "A", x, 4) - expected) > 0.06)
+            fail_msg("column %d: alpha %g, expected %g", x, (double)pixel(exr, "A", x, 4), expected);
+    }
+    ty_exr_destroy(exr);
+    // with an object that goes back as fast nothing is blurred
+    exr = render_plates("", "shutter: 1", "{ keys: { 0: [0.5, 0, 0], 2: [-0.5, 0, 0] } }");
+    for (int x = 0; x < 64; ++x)
+        if (x != 23 && x != 24 && x != 39 && x != 40)
+            assert_true(pixel(exr, "A", x, 4) == (x > 23 && x < 40 ? 1.0f : 0.0f));
+    ty_exr_destroy(exr);
+}
+
+// Where files turn back within the shutter both ways are seen: the plate is at 0 when it opens and when it closes, at
+// .25 between.
+static void files_within_the_shutter_count(void** state)
+{
+    (void)state;
+    static const float bent[] = {0.0f, 0.25f, 0.0f};
+    write_plates(bent, 3);
+    ty_exr* exr = render_plates("", "shutter: 2", "[-0.125, 0, 0]");
+    check_coverage(exr, 0.25);
+    ty_exr_destroy(exr);
+}
+
+static void files_keep_their_bits_where_nothing_blurs(void** state)
+{
+    (void)state;
+    static const float straight[] = {-0.5f, 0.0f, 0.5f}, still[] = {0.0f, 0.0f, 0.0f};
+    static const char none[] = "[0, 0, 0]";
+    write_plates(straight, 3);
+    ty_exr* closed = render_plates("", "shutter: 0", none);
+    ty_exr* held = render_plates(", interpolate: none", "shutter: 1", none);
+    assert_same_picture(closed, held);
+    ty_exr_destroy(held);
+    write_plates(still, 3);
+    ty_exr* rests = render_plates("", "shutter: 1", none);
+    assert_same_picture(closed, rests);
+    ty_exr_destroy(rests);
+    ty_exr_destroy(closed);
+    for (int k = 0; k < 3; ++k)
+    {
+        char name[32];
+        snprintf(name, sizeof name, "plate.%04d.ply", k);
+        remove(name);
+    }
 }
 
 // Both move together: nothing is blurred.
@@ -364,11 +474,19 @@ static void pictures_tell_their_time(void** state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(alpha_lies_along_the_path),        cmocka_unit_test(instances_smear_by_their_velocities),
-        cmocka_unit_test(what_goes_along_is_sharp),         cmocka_unit_test(stillness_costs_no_bit),
-        cmocka_unit_test(turning_follows_the_circle),       cmocka_unit_test(an_orthographic_ball_has_its_size),
-        cmocka_unit_test(blurs_keep_their_light),           cmocka_unit_test(all_directions_are_an_environment),
-        cmocka_unit_test(windows_and_loops_keep_every_bit), cmocka_unit_test(pictures_tell_their_time),
+        cmocka_unit_test(alpha_lies_along_the_path),
+        cmocka_unit_test(instances_smear_by_their_velocities),
+        cmocka_unit_test(files_smear_from_one_to_the_next),
+        cmocka_unit_test(files_within_the_shutter_count),
+        cmocka_unit_test(files_keep_their_bits_where_nothing_blurs),
+        cmocka_unit_test(what_goes_along_is_sharp),
+        cmocka_unit_test(stillness_costs_no_bit),
+        cmocka_unit_test(turning_follows_the_circle),
+        cmocka_unit_test(an_orthographic_ball_has_its_size),
+        cmocka_unit_test(blurs_keep_their_light),
+        cmocka_unit_test(all_directions_are_an_environment),
+        cmocka_unit_test(windows_and_loops_keep_every_bit),
+        cmocka_unit_test(pictures_tell_their_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

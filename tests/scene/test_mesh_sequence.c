@@ -169,6 +169,69 @@ static void topology_may_change(void** state)
     assert_non_null(strstr(fixture_errors.items[0].text, "attributes"));
 }
 
+// Steps of the mesh while the shutter is open, at a frame.
+static const ty_mesh* steps_at(double frame, int count)
+{
+    assert_int_equal(ty_scene_set_frame(fixture_scene, frame, &fixture_errors), TY_OK);
+    const ty_mesh* mesh = ty_world_prototype_mesh(fixture_scene->world, 0);
+    assert_int_equal(mesh->step_count, count);
+    assert_int_equal(fixture_scene->moves, count > 0);
+    return mesh;
+}
+
+// Files stand at heights 0, 1 and 4, so that the way from one to the next is straight and bends at each.
+static void vertices_move_within_the_shutter(void** state)
+{
+    (void)state;
+    write_frames();
+    load(SCENE(", hold: true") "camera: { shutter: 0.5, shutter_position: start }\n");
+    const ty_mesh* mesh = steps_at(1, 2);
+    fixture_near(mesh->step_positions[0].z, 0.0f, 1e-6f);
+    fixture_near(mesh->step_positions[3].z, 0.5f, 1e-6f);
+    fixture_near(height(), 0.0f, 1e-5f); // the ray is of the time at which the shutter opens
+    steps_at(2, 2);
+    fixture_near(mesh->step_positions[3].z, 2.5f, 1e-5f);
+    steps_at(4, 0); // held: it rests
+    assert_int_equal(fixture_scene->rebuilds.meshes, 2);
+    load(SCENE(", hold: true") "camera: { shutter: 0.5 }\n");
+    mesh = steps_at(2, 3); // the file of the frame is a step of its own
+    static const float heights[] = {0.75f, 1.0f, 1.75f};
+    for (int i = 0; i < 3; ++i)
+        fixture_near(mesh->step_positions[3 * i].z, heights[i], 1e-5f);
+    fixture_near(mesh->positions[0].z, 1.0f, 1e-6f);
+    fixture_near(height(), 0.75f, 1e-5f);
+    load(SCENE(", hold: true") "camera: { shutter: 2 }\n");
+    steps_at(2, 3);
+    load(SCENE(", hold: true") "camera: { shutter: 1.5 }\n");
+    mesh = steps_at(2.25, 4); // from 1.5 to 3: files at 2 and, held from there on, 3
+    fixture_near(mesh->step_positions[3].z, 1.0f, 1e-5f);
+    load(SCENE("") "camera: { shutter: 1 }\n");
+    mesh = steps_at(1, 3); // ahead of its time it stands still
+    fixture_near(mesh->step_positions[0].z, 0.0f, 1e-6f);
+    fixture_near(mesh->step_positions[6].z, 0.5f, 1e-6f);
+    load(SCENE(", loop: true") "camera: { shutter: 1 }\n");
+    mesh = steps_at(1, 3); // ahead of the first comes the last
+    fixture_near(mesh->step_positions[0].z, 2.0f, 1e-5f);
+}
+
+static void what_does_not_blur_stands_still(void** state)
+{
+    (void)state;
+    write_frames();
+    load(SCENE(", hold: true"));
+    steps_at(2, 0);
+    load(SCENE(", hold: true, interpolate: none") "camera: { shutter: 1 }\n");
+    steps_at(2, 0);
+    load("tsuya: 1\ntimeline: { end: 3 }\nassets: { a: { mesh: m.####.ply } }\ncamera: { shutter: 1 }\n"
+         "materials: { m: { model: surface, emission_luminance: 1 } }\nobjects: [ { mesh: a, material: m } ]\n");
+    steps_at(2, 0); // light is drawn from its triangles
+    // a shutter with keys opens and closes again
+    load(SCENE(", hold: true") "camera: { shutter: { keys: { 1: 0, 2: 1, 3: 0 } } }\n");
+    steps_at(2, 3);
+    steps_at(3, 0);
+    fixture_near(height(), 4.0f, 1e-5f);
+}
+
 static void wrong_files_are_named(void** state)
 {
     (void)state;
@@ -215,10 +278,16 @@ static void named_frames_are_covered(void** state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        FIXTURE_TEST(files_follow_the_time),    FIXTURE_TEST(only_what_changes_is_rebuilt),
-        FIXTURE_TEST(frames_do_not_remember),   FIXTURE_TEST(focus_follows_the_mesh),
-        FIXTURE_TEST(attributes_change_too),    FIXTURE_TEST(wrong_files_are_named),
-        FIXTURE_TEST(named_frames_are_covered), FIXTURE_TEST(topology_may_change),
+        FIXTURE_TEST(files_follow_the_time),
+        FIXTURE_TEST(only_what_changes_is_rebuilt),
+        FIXTURE_TEST(frames_do_not_remember),
+        FIXTURE_TEST(focus_follows_the_mesh),
+        FIXTURE_TEST(attributes_change_too),
+        FIXTURE_TEST(wrong_files_are_named),
+        FIXTURE_TEST(named_frames_are_covered),
+        FIXTURE_TEST(topology_may_change),
+        FIXTURE_TEST(vertices_move_within_the_shutter),
+        FIXTURE_TEST(what_does_not_blur_stands_still),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

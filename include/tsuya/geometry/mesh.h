@@ -36,11 +36,16 @@ typedef struct ty_mesh
     ty_vec3* direction_1;     // unit tangent of curvature_1
     ty_mesh_attribute* attributes;
     int attribute_count;
-    uint16_t* slots;   // [triangle_count] material slot, below slot_count (NULL = all 0)
-    char** slot_names; // [slot_count], as the file names its materials; no two equal
-    int slot_count;    // 0 = the file names none
-    char* recipe;      // the text that made it, or NULL
-    char* hash;        // hex, or NULL
+    // Where the vertices stand while the shutter is open (optional): at even steps, the first when it opens, the last
+    // when it closes. Between steps each goes straight on. For plain objects: in aggregates `positions` alone count.
+    int step_count;          // 0 = `positions` all the time; else 2..TY_MESH_MAX_STEPS
+    ty_vec3* step_positions; // [step_count][vertex_count]
+    ty_vec3* step_normals;   // the same, unit
+    uint16_t* slots;         // [triangle_count] material slot, below slot_count (NULL = all 0)
+    char** slot_names;       // [slot_count], as the file names its materials; no two equal
+    int slot_count;          // 0 = the file names none
+    char* recipe;            // the text that made it, or NULL
+    char* hash;              // hex, or NULL
     ty_bounds bounds;
 } ty_mesh;
 
@@ -86,6 +91,12 @@ double* ty_mesh_vertex_areas(const ty_mesh* mesh);
 const ty_mesh_attribute* ty_mesh_find_attribute(const ty_mesh* mesh, const char* name);
 // Adds (or finds) an attribute of zeros; the values are owned by the mesh.
 float* ty_mesh_add_attribute(ty_mesh* mesh, const char* name, int components);
+
+#define TY_MESH_MAX_STEPS 33
+
+// Makes room for steps, of zeros; those there were are freed. False, with none, when memory does not suffice.
+TY_CHECKED bool ty_mesh_make_steps(ty_mesh* mesh, int step_count);
+void ty_mesh_forget_steps(ty_mesh* mesh);
 
 // Two triangles from number first on: corners counter-clockwise seen from outside, cut along the shorter diagonal.
 void ty_mesh_set_quad(ty_mesh* mesh, uint32_t first, const uint32_t corners[4]);

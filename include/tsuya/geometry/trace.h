@@ -111,7 +111,8 @@ static inline ty_motion ty_motion_at_rest(const ty_affine* map)
 }
 
 // Adds a prototype; the mesh is borrowed and must outlive the world, or its removal. Equal pointers give the same
-// index: its BVH is built once.
+// index: its BVH is built once. Rays meet a mesh with steps as it stands at their time; questions without a time are
+// about its `positions`.
 TY_CHECKED ty_status ty_world_add_prototype(ty_world* world, const ty_mesh* mesh, uint32_t* prototype, ty_error* error);
 // A plain object: one prototype in one place. Objects are numbered in order of addition, from 0.
 TY_CHECKED ty_status ty_world_add_object(ty_world* world, uint32_t prototype, ty_motion motion, ty_object_flags flags,
@@ -161,7 +162,7 @@ const ty_mesh* ty_world_prototype_mesh(const ty_world* world, uint32_t prototype
 // Prototype to world at a time, and back. Not stored but made: keep the result where it is needed twice.
 ty_affine ty_world_to_world(const ty_world* world, uint32_t object, uint32_t instance, float time);
 ty_affine ty_world_to_local(const ty_world* world, uint32_t object, uint32_t instance, float time);
-bool ty_world_is_moving(const ty_world* world, uint32_t object); // or some of its instances are
+bool ty_world_is_moving(const ty_world* world, uint32_t object); // or some of its instances or vertices are
 // The kernels in use, as `isa` names them: with the build, what the bits of a picture depend on.
 const char* ty_world_isa(const ty_world* world);
 ty_bounds ty_world_bounds(const ty_world* world); // over the whole shutter
