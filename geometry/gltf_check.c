@@ -228,14 +228,6 @@ static ty_status check_accessors(ty_gltf_checker* c)
     return status;
 }
 
-const ty_gltf_accessor* ty_gltf_get_accessor(const ty_gltf_checker* c, const json_t* index)
-{
-    if (!json_is_integer(index) || json_integer_value(index) < 0 ||
-        (size_t)json_integer_value(index) >= c->accessor_count)
-        return NULL;
-    return &c->accessors[json_integer_value(index)];
-}
-
 ty_status ty_gltf_parse(const char* name, const char* json, size_t size, json_t** root, ty_error* error)
 {
     json_error_t where;

@@ -75,3 +75,11 @@ const json_t* ty_gltf_extension(const json_t* object, const char* name)
 {
     return json_object_get(json_object_get(object, "extensions"), name);
 }
+
+const ty_gltf_accessor* ty_gltf_get_accessor(const ty_gltf_checker* c, const json_t* index)
+{
+    if (!json_is_integer(index) || json_integer_value(index) < 0 ||
+        (size_t)json_integer_value(index) >= c->accessor_count)
+        return NULL;
+    return &c->accessors[json_integer_value(index)];
+}

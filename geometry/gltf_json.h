@@ -42,9 +42,11 @@ bool ty_gltf_read_float(const json_t* object, const char* key, float minimum, fl
 // object.extensions[name], or NULL.
 const json_t* ty_gltf_extension(const json_t* object, const char* name);
 
-bool ty_gltf_knows_extension(const char* name);
 // NULL when index names none.
 const ty_gltf_accessor* ty_gltf_get_accessor(const ty_gltf_checker* c, const json_t* index);
+
+// gltf_check.c
+bool ty_gltf_knows_extension(const char* name);
 // Extensions, buffers, views, accessors, meshes and nodes; name, error, root, is_aggregate and the sizes are given.
 TY_CHECKED ty_status ty_gltf_check(ty_gltf_checker* c);
 // gltf_check_meshes.c

@@ -3,31 +3,10 @@
 #include "gltf_mesh.h"
 #include "gltf_pack.h"
 #include "pipe.h"
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-#define WARNINGS_MAX 64
-
 // --- opening ---
-
-void ty_gltf_warn(ty_gltf_scene* scene, const char* format, ...)
-{
-    char text[400];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    for (int i = 0; i < scene->warning_count; i++)
-        if (strcmp(scene->warnings[i], text) == 0)
-            return;
-    if (!scene->warnings)
-        scene->warnings = TY_ARENA_ALLOC(scene->source->arena, const char*, WARNINGS_MAX);
-    if (scene->warning_count + 1 == WARNINGS_MAX)
-        snprintf(text, sizeof text, "and more that is left out");
-    if (scene->warning_count < WARNINGS_MAX)
-        scene->warnings[scene->warning_count++] = ty_arena_string(scene->source->arena, text);
-}
 
 static void warn_ignored(ty_gltf_scene* scene)
 {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A glTF file's text and buffers: containers, data URIs, files beside it.
 #include "gltf_source.h"
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+
+#define WARNINGS_MAX 64
 
 // --- URIs ---
 
@@ -194,4 +197,22 @@ void ty_gltf_source_term(ty_gltf_source* source)
         ty_bytes_term(&source->images[i]);
     json_decref(source->root);
     ty_bytes_term(&source->file);
+}
+
+void ty_gltf_warn(ty_gltf_scene* scene, const char* format, ...)
+{
+    char text[400];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    for (int i = 0; i < scene->warning_count; i++)
+        if (strcmp(scene->warnings[i], text) == 0)
+            return;
+    if (!scene->warnings)
+        scene->warnings = TY_ARENA_ALLOC(scene->source->arena, const char*, WARNINGS_MAX);
+    if (scene->warning_count + 1 == WARNINGS_MAX)
+        snprintf(text, sizeof text, "and more that is left out");
+    if (scene->warning_count < WARNINGS_MAX)
+        scene->warnings[scene->warning_count++] = ty_arena_string(scene->source->arena, text);
 }

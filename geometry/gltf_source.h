@@ -45,4 +45,5 @@ TY_CHECKED ty_status ty_gltf_resolve_uri(const ty_gltf_source* source, const cha
 TY_CHECKED ty_status ty_gltf_read_look(ty_gltf_scene* scene, ty_error* error);
 // gltf_nodes.c: objects, and where cameras and lights stand.
 TY_CHECKED ty_status ty_gltf_read_nodes(ty_gltf_scene* scene, ty_error* error);
+// gltf_source.c: once of each text, 64 in all.
 void ty_gltf_warn(ty_gltf_scene* scene, const char* format, ...) TY_PRINTF(2, 3);
