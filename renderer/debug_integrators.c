@@ -12,19 +12,6 @@ void ty_integrator_record(const ty_integrator* in, const ty_bsdf* bsdf, ty_film_
     out->instance = in->first_instance[point->object] + point->instance;
 }
 
-float ty_integrator_curvature(const ty_world* world, const ty_surface_point* point)
-{
-    const ty_mesh* mesh = ty_world_mesh(world, point->object, point->instance);
-    if (!mesh->curvature_1 || !mesh->curvature_2)
-        return 0.0f;
-    float sum =
-        ty_world_interpolate(world, point, mesh->curvature_1) + ty_world_interpolate(world, point, mesh->curvature_2);
-    // Stretched instances are taken at the mean of their scale: cube root of the volume ratio.
-    ty_affine map = ty_world_to_world(world, point->object, point->instance, point->time);
-    float volume = fabsf(ty_affine_determinant(&map));
-    return 0.5f * sum / ty_pow(volume, 1.0f / 3.0f);
-}
-
 static float ambient_occlusion(const ty_integrator* in, const ty_sampler* sampler, const ty_bsdf* bsdf,
                                ty_counters* counters)
 {

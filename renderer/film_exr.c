@@ -103,11 +103,6 @@ static void write_pixel(const ty_pixel_sums* sums, const ty_exr_type types[CHANN
     }
 }
 
-void ty_film_group_channel(const char* group, int component, char name[TY_GROUP_CHANNEL_SIZE])
-{
-    snprintf(name, TY_GROUP_CHANNEL_SIZE, TY_GROUP_CHANNEL "%.*s.%c", TY_LIGHT_GROUP_NAME, group, "RGB"[component]);
-}
-
 static ty_exr_type channel_type(const channel* row, bool half)
 {
     return row->type == TY_EXR_HALF && !half ? TY_EXR_FLOAT : row->type;

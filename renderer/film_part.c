@@ -285,3 +285,8 @@ ty_status ty_film_from_part(const ty_exr* exr, const char* name, ty_film** out, 
         *out = film;
     return status;
 }
+
+void ty_film_group_channel(const char* group, int component, char name[TY_GROUP_CHANNEL_SIZE])
+{
+    snprintf(name, TY_GROUP_CHANNEL_SIZE, TY_GROUP_CHANNEL "%.*s.%c", TY_LIGHT_GROUP_NAME, group, "RGB"[component]);
+}
