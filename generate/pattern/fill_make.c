@@ -2,6 +2,8 @@
 // A fill from its beginning to its last frame: a run goes frame by frame with its events; the states that a loop shows
 // are visited in the order of time. None is kept but the last, to go on from.
 #include "fill_run.h"
+#include "fill_tables.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <tsuya/base/log.h>
@@ -216,3 +218,46 @@ ty_status ty_fill_make_from(const void* def, ty_workers* workers, const ty_frame
     fill_run_term(&m.run);
     return status;
 }
+
+// --- the generator ---
+
+static int channels(const void* def, ty_frame_channel out[TY_FRAME_CHANNELS])
+{
+    static const char* const planes[] = {"u", "v", "mark", "trail", "distance"};
+    const ty_fill_recipe* recipe = def;
+    const ty_fill_mark* marks = recipe->marks.items;
+    int count = 0;
+    for (; count < (int)(sizeof planes / sizeof *planes); count++)
+    {
+        snprintf(out[count].name, sizeof out->name, "%s", planes[count]);
+        out[count].output = planes[count];
+    }
+    for (int i = 0; i < TY_GRAY_SCOTT_MARKS && (i == 0 || i < recipe->marks.count); i++)
+        fill_matte_name(recipe->marks.count > 0 ? marks[i].name : NULL, i, out[count++].name);
+    if (fill_has_closed_cells(recipe))
+        fill_matte_name("closed", 0, out[count++].name);
+    for (int i = (int)(sizeof planes / sizeof *planes); i < count; i++)
+        out[i].output = "mattes";
+    return count;
+}
+
+static int frame_count(const void* def)
+{
+    const ty_fill_recipe* recipe = def;
+    return recipe->run.frames > 0 ? recipe->run.frames : recipe->loop.frames;
+}
+
+static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_error* error)
+{
+    return ty_fill_make_from(def, workers, &out->frames, out->state, error);
+}
+
+const ty_generator ty_fill_generator = {
+    .kind = "fill",
+    .build_id = "fill 3",
+    .product = TY_PRODUCT_FRAMES,
+    .params = &ty_fill_recipe_table,
+    .frame_count = frame_count,
+    .channels = channels,
+    .make = make,
+};

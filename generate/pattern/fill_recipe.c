@@ -3,24 +3,6 @@
 #include "fill_tables.h"
 #include <stdio.h>
 
-ty_fill_recipe ty_fill_recipe_default(void)
-{
-    return (ty_fill_recipe){
-        .cells = {256, 256},
-        .scale = 2,
-        .tile = TY_PATTERN_TILE_BOTH,
-        .variation_size = 64.0f,
-        .drops = {24, 10.0f, {0.0f, 1.0f}},
-        .region = {.threshold = 0.5f},
-        .steps = 8000,
-        .loop = {24, 2000, 3.0f},
-        .run = {.steps = 60.0f, .first = 1},
-        .tone = {0.12f, 0.28f},
-        .high = {1.0f, 1.0f, 1.0f},
-        .seed = {7},
-    };
-}
-
 // --- drops ---
 
 static void drops_set_default(void* def)
@@ -144,11 +126,6 @@ const ty_param_table ty_fill_recipe_table = {
     recipe_rows,
     TY_PARAM_COUNT(recipe_rows)};
 
-const ty_param_table* ty_fill_recipe_params(void)
-{
-    return &ty_fill_recipe_table;
-}
-
 void fill_matte_name(const char* mark, int number, char name[64])
 {
     if (mark)
@@ -165,44 +142,3 @@ bool fill_has_closed_cells(const ty_fill_recipe* recipe)
         any = any || events[i].op == TY_FILL_BARRIER;
     return any;
 }
-
-static int channels(const void* def, ty_frame_channel out[TY_FRAME_CHANNELS])
-{
-    static const char* const planes[] = {"u", "v", "mark", "trail", "distance"};
-    const ty_fill_recipe* recipe = def;
-    const ty_fill_mark* marks = recipe->marks.items;
-    int count = 0;
-    for (; count < (int)(sizeof planes / sizeof *planes); count++)
-    {
-        snprintf(out[count].name, sizeof out->name, "%s", planes[count]);
-        out[count].output = planes[count];
-    }
-    for (int i = 0; i < TY_GRAY_SCOTT_MARKS && (i == 0 || i < recipe->marks.count); i++)
-        fill_matte_name(recipe->marks.count > 0 ? marks[i].name : NULL, i, out[count++].name);
-    if (fill_has_closed_cells(recipe))
-        fill_matte_name("closed", 0, out[count++].name);
-    for (int i = (int)(sizeof planes / sizeof *planes); i < count; i++)
-        out[i].output = "mattes";
-    return count;
-}
-
-static int frame_count(const void* def)
-{
-    const ty_fill_recipe* recipe = def;
-    return recipe->run.frames > 0 ? recipe->run.frames : recipe->loop.frames;
-}
-
-static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_error* error)
-{
-    return ty_fill_make_from(def, workers, &out->frames, out->state, error);
-}
-
-const ty_generator ty_fill_generator = {
-    .kind = "fill",
-    .build_id = "fill 3",
-    .product = TY_PRODUCT_FRAMES,
-    .params = &ty_fill_recipe_table,
-    .frame_count = frame_count,
-    .channels = channels,
-    .make = make,
-};

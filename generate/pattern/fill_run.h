@@ -57,10 +57,16 @@ typedef struct fill_run
 // failure too.
 TY_CHECKED ty_status fill_run_init(fill_run* run, const ty_fill_recipe* recipe, ty_workers* workers, ty_error* error);
 void fill_run_term(fill_run* run);
+// fill_marks.c
+// Marks, their rates and plain states, and the level of the front, from the recipe.
+void fill_marks_take(fill_run* run);
+TY_CHECKED ty_status fill_marks_check(const fill_run* run, ty_error* error);
 // Number of the mark; -1 and an error that begins with key.
 int fill_mark_find(const fill_run* run, const char* name, const char* key, ty_error* error);
 // The feed of each cell, after marks have changed.
 TY_CHECKED ty_status fill_vary(const fill_run* run, ty_error* error);
+// The noise of the recipe's variation, -1..1, into run->noise.
+void fill_noise(fill_run* run);
 
 // fill_files.c
 TY_CHECKED ty_status fill_files_open(fill_run* run, ty_error* error);
@@ -100,6 +106,11 @@ TY_CHECKED ty_status fill_show(const fill_run* run, int frame, float drift, ty_e
 ty_exr* fill_state_save(const fill_run* run, int frame);
 TY_CHECKED ty_status fill_state_load(fill_run* run, const ty_bytes* state, int* frame, ty_error* error);
 
+// A number of the recipe that is 0 where another is meant.
+static inline float fill_or(float value, float otherwise)
+{
+    return value > 0.0f ? value : otherwise;
+}
 static inline size_t fill_cell(const fill_run* run, int x, int y)
 {
     return (size_t)y * (size_t)run->width + (size_t)x;

@@ -186,3 +186,21 @@ const ty_param_table fill_run_table = {"fill.run",
                                        run_set_default,
                                        run_rows,
                                        TY_PARAM_COUNT(run_rows)};
+
+ty_fill_recipe ty_fill_recipe_default(void)
+{
+    return (ty_fill_recipe){
+        .cells = {256, 256},
+        .scale = 2,
+        .tile = TY_PATTERN_TILE_BOTH,
+        .variation_size = 64.0f,
+        .drops = {24, 10.0f, {0.0f, 1.0f}},
+        .region = {.threshold = 0.5f},
+        .steps = 8000,
+        .loop = {24, 2000, 3.0f},
+        .run = {.steps = 60.0f, .first = 1},
+        .tone = {0.12f, 0.28f},
+        .high = {1.0f, 1.0f, 1.0f},
+        .seed = {7},
+    };
+}

@@ -292,3 +292,11 @@ ty_status ty_filter_frame(const ty_filter_run* run, ty_exr** out, ty_error* erro
     ty_free(over);
     return status;
 }
+
+int64_t ty_filter_steps(const ty_filter_run* run, int frame)
+{
+    const ty_filter_recipe* r = run->recipe;
+    bool anew = run->sequence && r->mode != TY_FILTER_TONE;
+    double end = (double)r->time + (anew ? 0.0 : (frame - 1) * (double)r->time_per_frame);
+    return (int64_t)floor(end / (double)ty_turing_time_step(run->fields[0]) + 0.5);
+}

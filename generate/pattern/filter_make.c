@@ -17,14 +17,6 @@ static bool starts_anew(const ty_filter_run* run, int frame)
     return frame == 1 || (run->sequence && run->recipe->mode != TY_FILTER_TONE);
 }
 
-int64_t ty_filter_steps(const ty_filter_run* run, int frame)
-{
-    const ty_filter_recipe* r = run->recipe;
-    bool anew = run->sequence && r->mode != TY_FILTER_TONE;
-    double end = (double)r->time + (anew ? 0.0 : (frame - 1) * (double)r->time_per_frame);
-    return (int64_t)floor(end / (double)ty_turing_time_step(run->fields[0]) + 0.5);
-}
-
 // The reaction's own beginning is chance, the same in every field so that greys stay grey; a picture's is the picture.
 static void field_begin(const ty_filter_run* run, int number)
 {
@@ -131,10 +123,23 @@ static ty_status size_find(ty_filter_run* run, ty_error* error)
     return TY_OK;
 }
 
+static int frame_count(const void* def)
+{
+    const ty_filter_recipe* r = def;
+    ty_frame_numbers numbers;
+    ty_error error;
+    if (r->frames > 0 || !r->image || !ty_path_is_sequence(r->image) ||
+        ty_frame_numbers_find(r->image, &numbers, &error) != TY_OK)
+        return r->frames > 0 ? r->frames : 1;
+    int last = numbers.numbers[numbers.count - 1];
+    ty_frame_numbers_term(&numbers);
+    return last >= r->first_frame ? last - r->first_frame + 1 : 1;
+}
+
 static ty_status image_open(ty_filter_run* run, ty_error* error)
 {
     const ty_filter_recipe* r = run->recipe;
-    run->frame_count = ty_filter_generator.frame_count(r);
+    run->frame_count = frame_count(r);
     run->sequence = run->moves = r->image && ty_path_is_sequence(r->image);
     for (int i = 0; i < r->regions.count; i++)
         run->sequence |= ty_path_is_sequence(((const ty_filter_region*)r->regions.items)[i].mask);
@@ -188,3 +193,19 @@ ty_status ty_filter_make(const void* def, ty_workers* workers, const ty_frame_si
     ty_color_destroy(run.color);
     return status;
 }
+
+// --- the generator ---
+
+static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_error* error)
+{
+    return ty_filter_make(def, workers, &out->frames, out->state, error);
+}
+
+const ty_generator ty_filter_generator = {
+    .kind = "filter",
+    .build_id = "filter 2",
+    .product = TY_PRODUCT_FRAMES,
+    .params = &ty_filter_recipe_table,
+    .frame_count = frame_count,
+    .make = make,
+};

@@ -191,7 +191,7 @@ static const char *const modes[] = {"tone", "plain", "limited", NULL},
                          *const edge_names[] = {"free", "fixed", "wrap", NULL},
                          *const color_names[] = {"grey", "tinted", "channels", NULL};
 
-static void set_recipe_table(void* def)
+static void set_recipe(void* def)
 {
     *(ty_filter_recipe*)def = ty_filter_recipe_default();
 }
@@ -229,38 +229,8 @@ static const ty_param recipe_rows[] = {
     FIELD("fields", TY_PARAM_BOOL, "", 0, 0, fields, "U and V as further channels of EXR files"),
     FIELD("seed", TY_PARAM_SEED, "", 0, 0, seed, "another seed, another pattern"),
 };
-TABLE(recipe_table, "filter",
-      "A picture redrawn by Turing's activator and inhibitor: spots and stripes that keep its tones.", recipe_rows);
+const ty_param_table ty_filter_recipe_table = {
+    "filter",      "A picture redrawn by Turing's activator and inhibitor: spots and stripes that keep its tones.",
+    sizeof(OWNER), set_recipe,
+    recipe_rows,   TY_PARAM_COUNT(recipe_rows)};
 #undef OWNER
-
-const ty_param_table* ty_filter_recipe_params(void)
-{
-    return &recipe_table;
-}
-
-static int frame_count(const void* def)
-{
-    const ty_filter_recipe* r = def;
-    ty_frame_numbers numbers;
-    ty_error error;
-    if (r->frames > 0 || !r->image || !ty_path_is_sequence(r->image) ||
-        ty_frame_numbers_find(r->image, &numbers, &error) != TY_OK)
-        return r->frames > 0 ? r->frames : 1;
-    int last = numbers.numbers[numbers.count - 1];
-    ty_frame_numbers_term(&numbers);
-    return last >= r->first_frame ? last - r->first_frame + 1 : 1;
-}
-
-static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_error* error)
-{
-    return ty_filter_make(def, workers, &out->frames, out->state, error);
-}
-
-const ty_generator ty_filter_generator = {
-    .kind = "filter",
-    .build_id = "filter 2",
-    .product = TY_PRODUCT_FRAMES,
-    .params = &recipe_table,
-    .frame_count = frame_count,
-    .make = make,
-};

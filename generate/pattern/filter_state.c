@@ -13,7 +13,7 @@ static pattern_state_kind kind_of(const ty_filter_run* run)
     // A sequence steers by frames: what came before a state depends on when they were.
     static const char* const by_frame[] = {"cells", "scale",     "tone.calibrated", "frames", "low",
                                            "high",  "threshold", "softness",        "fields", NULL};
-    return (pattern_state_kind){"tsuya filter state 2", "a filter", ty_filter_recipe_params(),
+    return (pattern_state_kind){"tsuya filter state 2", "a filter", &ty_filter_recipe_table,
                                 run->sequence ? by_frame : free_rows};
 }
 

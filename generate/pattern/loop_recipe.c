@@ -220,7 +220,7 @@ TABLE(motion_table, "loop.motion", "How plane and axis move in a loop.", motion_
 
 static const char* const samplings[] = {"nearest", "trilinear", NULL};
 
-static void set_recipe_table(void* def)
+static void set_recipe(void* def)
 {
     *(ty_loop_recipe*)def = ty_loop_recipe_default();
 }
@@ -249,13 +249,11 @@ static const ty_param recipe_rows[] = {
     FIELD("clear", TY_PARAM_BOOL, "", 0, 0, clear,
           "what is outside is transparent; with colors it also is where a logo's background is"),
 };
-TABLE(recipe_table, "loop", "A looping texture: a rectangle moves through a volume on a closed path.", recipe_rows);
+const ty_param_table ty_loop_recipe_table = {
+    "loop",        "A looping texture: a rectangle moves through a volume on a closed path.",
+    sizeof(OWNER), set_recipe,
+    recipe_rows,   TY_PARAM_COUNT(recipe_rows)};
 #undef OWNER
-
-const ty_param_table* ty_loop_recipe_params(void)
-{
-    return &recipe_table;
-}
 
 static int frame_count(const void* def)
 {
@@ -271,7 +269,7 @@ const ty_generator ty_loop_generator = {
     .kind = "loop",
     .build_id = "loop 2",
     .product = TY_PRODUCT_FRAMES,
-    .params = &recipe_table,
+    .params = &ty_loop_recipe_table,
     .frame_count = frame_count,
     .make = make,
 };

@@ -104,3 +104,21 @@ void ty_loop_tint_of(const ty_loop_volume* v, const ty_loop_corners* corners, ui
     for (int k = 0; k < 3 && total > 0.0f; k++)
         out[k] = (uint8_t)(sum[k] / total + 0.5f);
 }
+
+ty_status ty_loop_part_error(ty_status status, int index, const char* group, ty_error* error)
+{
+    if (status != TY_BAD_INPUT || !error || error->file[0])
+        return status;
+    return ty_error_set(error, status, "volume[%d].%s.%.900s", index, group, error->text);
+}
+
+ty_status ty_loop_range(const ty_loop_part* part, int index, float high, float* low, float* scale, ty_error* error)
+{
+    bool given = part->range[0] != 0.0f || part->range[1] != 0.0f;
+    if (given && part->range[0] == part->range[1])
+        return ty_error_set(error, TY_BAD_INPUT, "volume[%d].range: [%g, %g]; two different numbers", index,
+                            (double)part->range[0], (double)part->range[1]);
+    *low = given ? part->range[0] : 0.0f;
+    *scale = 1.0f / ((given ? part->range[1] : high) - *low);
+    return TY_OK;
+}

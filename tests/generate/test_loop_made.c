@@ -80,7 +80,7 @@ static float* logo_write(const char* path, int colors)
 
 static ty_loop_part part_default(void)
 {
-    const ty_param_table* table = ty_loop_recipe_params()->params[0].group;
+    const ty_param_table* table = ty_loop_recipe_table.params[0].group;
     ty_loop_part part;
     assert_int_equal(sizeof part, table->size);
     table->set_default(&part);

@@ -206,8 +206,7 @@ typedef struct ty_fill_recipe
 } ty_fill_recipe;
 
 ty_fill_recipe ty_fill_recipe_default(void); // a labyrinth of 256 x 256 cells that tiles, 24 frames
-const ty_param_table* ty_fill_recipe_params(void);
-extern const ty_param_table ty_fill_recipe_table; // the same, for tables that hold it
+extern const ty_param_table ty_fill_recipe_table;
 // def is a ty_fill_recipe; as ty_generator's make. Frames have Y or R, G, B (and A where something is not opaque), and
 // the outputs as float channels: u, v, mark, trail (frame when v passed the threshold first, -1 = not yet), distance
 // (cells from the front, positive in the hole), matte.NAME for each mark and matte.closed, which add up to 1.

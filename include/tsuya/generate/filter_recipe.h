@@ -95,7 +95,7 @@ typedef struct ty_filter_recipe
 } ty_filter_recipe;
 
 ty_filter_recipe ty_filter_recipe_default(void);
-const ty_param_table* ty_filter_recipe_params(void);
+extern const ty_param_table ty_filter_recipe_table;
 // The field's definition that a recipe comes to, but for its size.
 ty_turing_def ty_filter_turing_def(const ty_filter_recipe* recipe);
 // def is a ty_filter_recipe; as ty_generator's make. Goes on from what sink->keep was given, as a file, where there is

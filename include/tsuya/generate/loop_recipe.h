@@ -147,7 +147,7 @@ typedef struct ty_loop_recipe
 } ty_loop_recipe;
 
 ty_loop_recipe ty_loop_recipe_default(void); // a volume is missing
-const ty_param_table* ty_loop_recipe_params(void);
+extern const ty_param_table ty_loop_recipe_table;
 // def is a ty_loop_recipe; as ty_generator's make. *report (NULL = not wanted): a JSON object as text, the caller's.
 TY_CHECKED ty_status ty_loop_make(const void* def, ty_workers* workers, const ty_frame_sink* sink, char** report,
                                   ty_error* error);
