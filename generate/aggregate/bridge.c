@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cohesion of a pile: bridges of water after Willett et al. 2000 and the adhesion of starch, as pulls in the warm
 // start. The contact's own impulse then grows by what they pull, so that friction holds with it.
-#include "pile_state.h"
+#include "contact_place.h"
 
 #define DRY 0.35f       // wet basis up to which all water is within the grains
 #define SATURATED 0.76f // wet basis at which water fills the space between cooked grains at a packing of .6

@@ -26,7 +26,7 @@ bool ty_container_is_open(const ty_container* c)
 
 bool ty_container_is_turned(const ty_container* c)
 {
-    return c->def.kind != TY_CONTAINER_BOX && c->def.kind != TY_CONTAINER_MESH && c->def.kind != TY_CONTAINER_ONIGIRI;
+    return is_turned(c);
 }
 
 bool ty_cut_takes(const ty_cut_def* cut, ty_vec3 p)
@@ -131,7 +131,7 @@ float ty_container_wall(const ty_container* c, int wall, ty_vec3 p, ty_vec3* nor
         *normal = ty_vec3_make(0.0f, 1.0f, 0.0f);
         return p.y - c->def.ground;
     }
-    return ty_container_is_turned(c) ? turned_wall(c, p, normal) : field_lookup(c, p, normal);
+    return is_turned(c) ? turned_wall(c, p, normal) : field_lookup(c, p, normal);
 }
 
 // A node about p is one of the hollow; above the rim, one of its last row.

@@ -73,7 +73,7 @@ static void table_place(ty_container* c, ty_bounds b)
 {
     ty_vec3 extent = ty_sub(b.high, b.low);
     float pad = 0.06f * ty_max(extent.x, ty_max(extent.y, extent.z));
-    if (ty_container_is_turned(c))
+    if (is_turned(c))
     {
         float width = 0.5f * extent.x + pad, height = extent.y + 2.0f * pad;
         c->step = ty_max(width, height) / (float)(TURNED_NODES - 1);

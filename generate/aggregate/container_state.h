@@ -37,6 +37,12 @@ static inline bool is_planes(const ty_container* c)
     return c->def.kind == TY_CONTAINER_BOX && !is_mould(c);
 }
 
+// Round about the y axis.
+static inline bool is_turned(const ty_container* c)
+{
+    return c->def.kind != TY_CONTAINER_BOX && c->def.kind != TY_CONTAINER_MESH && c->def.kind != TY_CONTAINER_ONIGIRI;
+}
+
 static inline const node* node_at(const ty_container* c, int i, int j, int k)
 {
     return &c->nodes[((size_t)k * (size_t)c->size[1] + (size_t)j) * (size_t)c->size[0] + (size_t)i];

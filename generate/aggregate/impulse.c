@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contacts of a substep and the impulses in them, block by block: prepared, solved and relaxed.
-#include "pile_state.h"
+#include "contact_place.h"
 
 #define DAMPING_RATIO 10.0f // of a contact
 #define PUSH_OUT 0.1f       // m/s, largest speed at which an overlap is undone
@@ -37,33 +37,6 @@ static inline void contact_masses(contact* c, const motion* a, const motion* b)
     float half = 0.5f * (sum.ss - sum.tt);
     c->normal_weight = sum.nn;
     c->tangent_mass = 1.0f / (0.5f * (sum.ss + sum.tt) + sqrtf(half * half + sum.st * sum.st));
-}
-
-bool pile_contact_place(const ty_pile* pile, const pair* p, const touch* t, float limit, contact* c)
-{
-    const ty_ball* ball = &pile_balls(pile, p->a)[t->a];
-    ty_vec3 from = ball->center;
-    if (p->b >= 0)
-    {
-        const ty_ball* other = &pile_balls(pile, p->b)[t->b];
-        ty_vec3 d = ty_sub(from, other->center);
-        float reach = ball->radius + other->radius, square = ty_length_sqr(d);
-        if (square > ty_sqr(reach + limit))
-            return false;
-        float length = sqrtf(square);
-        c->gap = length - reach;
-        c->normal = length > 1e-9f ? ty_mul(d, 1.0f / length) : ty_vec3_make(0.0f, 1.0f, 0.0f);
-        c->arm_b = ty_sub(ty_mad(other->center, c->normal, other->radius), pile->bodies[p->b].position);
-    }
-    else
-    {
-        c->gap = pile_wall(pile, t->b, from, &c->normal) - ball->radius;
-        if (c->gap > limit)
-            return false;
-        c->arm_b = ty_vec3_make(0.0f, 0.0f, 0.0f);
-    }
-    c->arm_a = ty_sub(ty_mad(from, c->normal, -ball->radius), pile->bodies[p->a].position);
-    return true;
 }
 
 static bool is_still(const ty_pile* pile, int body)

@@ -5,6 +5,9 @@
 #include "mixture.h"
 #include <tsuya/generate/xpbd.h>
 
+// Rises with each change of the bytes that recipes give, or of states.
+#define AGGREGATE_BUILD_ID "aggregate 7"
+
 // What has left the mouth so far, and what is to come, in order.
 typedef struct pour
 {
@@ -70,17 +73,23 @@ float cooking_pore_area(const cooking* c, float minute); // m^2, mean of a pore
 // Wet basis of one grain. moisture: its attribute; exposed: 1 at the surface of the heap, 0 deep in it.
 float cooking_wet_basis(const cooking* c, float minute, float moisture, float exposed);
 
-// make.c
+static inline const ty_layer_def* kit_layer_def(const ty_aggregate_recipe* r, int layer) // from 1
+{
+    return (const ty_layer_def*)r->layers.items + (layer - 1);
+}
+
+// kit.c
 TY_CHECKED ty_status kit_interrupted(const char* what, ty_error* error); // while what; TY_OK unless one asks to stop
-// Settles; drops a new grain for each that is lost over the rim.
-TY_CHECKED ty_status kit_rest(kit* k, ty_error* error);
+// Elements, container, and a pile of them without a body.
+TY_CHECKED ty_status kit_pile(kit* k, ty_error* error);
+void kit_layer_select(kit* k, int layer); // what is drawn and dropped from now on is of it
+// A body of a random element, turned as the recipe allows and at most steepest off the horizontal.
+ty_body kit_body(kit* k, ty_vec3 position, float steepest);
 // Makes bodies those of the pile, with a push of about the speed of a fall through their width for those not held: they
 // are wedged where none can be dropped.
 void kit_stir(kit* k, ty_body* bodies, const bool* held);
-// A body of a random element, turned as the recipe allows and at most steepest off the horizontal.
-ty_body kit_body(kit* k, ty_vec3 position, float steepest);
-// Elements, container, and a pile of them without a body.
-TY_CHECKED ty_status kit_pile(kit* k, ty_error* error);
+
+// make_write.c
 TY_CHECKED ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error);
 
 // film.c
@@ -113,11 +122,12 @@ TY_CHECKED ty_status kit_pour(kit* k, ty_error* error);       // until all have 
 
 // make_layers.c
 TY_CHECKED ty_status layers_check(const ty_aggregate_recipe* r, ty_error* error);
-void kit_layer_select(kit* k, int layer); // what is drawn and dropped from now on is of it
 // Those above the one that is selected: each falls onto the pile once that is at rest. The last is still in the air.
 TY_CHECKED ty_status kit_layers(kit* k, ty_error* error);
 // As many new bodies of each layer fall onto the pile as are missing.
 void kit_refill(kit* k);
+// Settles; drops a new grain for each that is lost over the rim.
+TY_CHECKED ty_status kit_rest(kit* k, ty_error* error);
 
 // xpbd_settle.c: settles or presses the pile as elastic bodies for the recipe's time; the pile's bodies are then where
 // they are, and bent.

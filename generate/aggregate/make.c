@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes an aggregate from its recipe: fill, settle, take away what is too much, polish until nothing floats, write
-// down.
+// Makes an aggregate from its recipe: fill, settle, take away what is too much, polish until nothing floats.
 #include "kit.h"
 #include "start.h"
 #include <stdio.h>
@@ -11,24 +10,6 @@ enum
 {
     ROUNDS = 12, // of settling and looking for grains that float
 };
-
-// --- bodies ---
-
-static ty_quat rotation_draw(const ty_fill_def* fill, float steepest, ty_rng* rng)
-{
-    ty_quat heading = ty_quat_axis_angle(ty_vec3_make(0.0f, 1.0f, 0.0f), ty_rng_range(rng, 0.0f, 2.0f * TY_PI));
-    float sine = ty_rng_range(rng, -1.0f, 1.0f) * ty_sin(steepest); // even over the sphere at a tilt of 90 degrees
-    ty_quat tilt = ty_quat_axis_angle(ty_vec3_make(0.0f, 0.0f, 1.0f), 0.5f * TY_PI - ty_acos(sine));
-    ty_quat roll = ty_quat_axis_angle(ty_vec3_make(1.0f, 0.0f, 0.0f), ty_rng_range(rng, -1.0f, 1.0f) * fill->roll);
-    return ty_quat_multiply(heading, ty_quat_multiply(tilt, roll));
-}
-
-ty_body kit_body(kit* k, ty_vec3 position, float steepest)
-{
-    ty_body body = {.position = position, .rotation = rotation_draw(k->fill, steepest, &k->rng)};
-    mixture_draw(&k->mix, &k->rng, &body);
-    return body;
-}
 
 // --- checks ---
 
@@ -59,70 +40,7 @@ static ty_status recipe_check(const ty_aggregate_recipe* r, ty_error* error)
     return status == TY_OK ? layers_check(r, error) : status;
 }
 
-static ty_status container_check(const kit* k, ty_error* error)
-{
-    ty_bounds b = ty_container_interior(k->container);
-    ty_vec3 size = ty_sub(b.high, b.low);
-    float least = 2.0f * ty_container_widest(k->container), most = ty_max(size.x, ty_max(size.y, size.z));
-    float width = k->mix.widest, length = k->mix.longest;
-    if (least >= 1.5f * width && most >= 1.5f * length)
-        return TY_OK;
-    return ty_error_set(
-        error, TY_BAD_INPUT,
-        "container: its inside is %.3g x %.3g x %.3g mm; grains of %.3g x %.3g mm need at least %.3g by "
-        "%.3g mm",
-        (double)size.x * 1e3, (double)size.y * 1e3, (double)size.z * 1e3, (double)length * 1e3, (double)width * 1e3,
-        (double)length * 1.5e3, (double)width * 1.5e3);
-}
-
-// --- adjust ---
-
-ty_status kit_interrupted(const char* what, ty_error* error)
-{
-    return ty_cancel_requested() ? ty_error_set(error, TY_INTERRUPTED, "interrupted while %s", what) : TY_OK;
-}
-
-ty_status kit_rest(kit* k, ty_error* error)
-{
-    int allowed = 20 + k->count / 4;
-    ty_pile_end end = TY_PILE_LOST;
-    while (end == TY_PILE_LOST && k->lost <= allowed)
-    {
-        int lost;
-        end = k->resumed ? ty_pile_settle_on(k->pile, k->recipe->settle.max_seconds, k->workers, &lost)
-                         : ty_pile_settle(k->pile, k->recipe->settle.max_seconds, k->workers, &lost);
-        k->resumed = false;
-        k->rest = end == TY_PILE_REST;
-        ty_status status = end == TY_PILE_LOST ? TY_OK : kit_keep(k, end != TY_PILE_REST, error);
-        if (status != TY_OK)
-            return status;
-        k->lost += lost;
-        k->replaced += lost;
-        kit_refill(k);
-    }
-    if (end == TY_PILE_CANCELED)
-        return kit_interrupted("settling", error);
-    if (end == TY_PILE_LOST)
-        return ty_error_set(error, TY_BAD_INPUT,
-                            "fill.count: %d grains do not stay in the container: %d fell over its rim", k->count,
-                            k->lost);
-    return TY_OK;
-}
-
-void kit_stir(kit* k, ty_body* bodies, const bool* held)
-{
-    float speed = sqrtf(2.0f * 9.81f * k->mix.width);
-    for (int i = 0; i < ty_pile_count(k->pile); i++)
-    {
-        ty_vec3 push;
-        push.x = speed * ty_element_bell(&k->rng);
-        push.y = speed * ty_element_bell(&k->rng);
-        push.z = speed * ty_element_bell(&k->rng);
-        if (!held[i])
-            bodies[i].velocity = push;
-    }
-    ty_pile_set_bodies(k->pile, bodies);
-}
+// --- until nothing floats ---
 
 // Takes out what floats in a vessel that one can drop new grains into.
 static void floating_replace(kit* k, bool* held)
@@ -182,58 +100,6 @@ static ty_status pile_finish(kit* k, ty_pile_metrics* metrics, ty_error* error)
 
 // --- the result ---
 
-// Chance and drying in one number: mean about 0, within -1..1, less at the surface.
-static void attributes_write(const kit* k, uint32_t count, ty_aggregate* out)
-{
-    float* moisture = ty_aggregate_add_attribute(out, "moisture");
-    float* tint = ty_aggregate_add_attribute(out, "tint");
-    float* depth = ty_aggregate_add_attribute(out, "depth");
-    float* wet_basis = k->mechanics.given ? ty_aggregate_add_attribute(out, "wet_basis") : NULL;
-    for (uint32_t i = 0; i < count; i++)
-        depth[i] = 1.05f * k->mix.length; // of those that are poured yet: as wet as the mean
-    ty_pile_depth(k->pile, depth);
-    const ty_wetness_def* wet = &k->recipe->moisture;
-    for (uint32_t i = 0; i < count; i++)
-    {
-        ty_rng rng = ty_rng_make(k->recipe->seed, 0x6d6f6973, i);
-        float exposed = ty_exp(-depth[i] / k->mix.length);
-        float m = 0.45f * wet->variation * ty_element_bell(&rng) + wet->drying * (0.35f - exposed);
-        moisture[i] = ty_clamp(m, -1.0f, 1.0f);
-        tint[i] = ty_clamp(0.5f * ty_element_bell(&rng), -1.0f, 1.0f);
-    }
-    for (uint32_t i = count; i < out->instance_count; i++) // further bodies of the same elements
-    {
-        moisture[i] = moisture[k->owners[i]];
-        tint[i] = tint[k->owners[i]];
-        depth[i] = depth[k->owners[i]];
-    }
-    for (uint32_t i = 0; i < out->instance_count && wet_basis; i++)
-        wet_basis[i] = ty_clamp(k->mechanics.state.wet_basis * (1.0f + KIT_WET_SPREAD * moisture[i]), 0.05f, 1.0f);
-}
-
-ty_status kit_write(kit* k, const ty_pile_metrics* metrics, ty_aggregate** out, ty_error* error)
-{
-    mixture_select(&k->mix, 0);                  // what is relative to a size is so to that of the lowest layer
-    bool waits = k->pour.poured < k->pour.count; // a film of it begins: there are as many in all its files
-    uint32_t count = (uint32_t)(waits ? k->pour.count : ty_pile_count(k->pile));
-    const ty_body* bodies = waits ? k->pour.bodies : ty_pile_bodies(k->pile);
-    ty_affine* frames = ty_pile_is_bent(k->pile) ? TY_TRY_ALLOC(ty_affine, count) : NULL;
-    for (uint32_t i = 0; i < count && frames; i++)
-        frames[i] = ty_pile_frame(k->pile, (int)i);
-    ty_aggregate* a = NULL;
-    if (frames || !ty_pile_is_bent(k->pile))
-        a = mixture_write(&k->mix, k->recipe->seed, bodies, frames, count, &k->owners);
-    ty_free(frames);
-    if (!a)
-        return ty_error_set(error, TY_NO_MEMORY, "no memory for %u grains", count);
-    attributes_write(k, count, a);
-    a->metrics = kit_metrics(k, metrics);
-    a->state = k->state; // now the aggregate's
-    k->state = (ty_bytes){0};
-    *out = a;
-    return TY_OK;
-}
-
 // Leaves out what lies in the cut, now that nothing moves any more.
 static ty_status pile_cut(kit* k, ty_error* error)
 {
@@ -252,30 +118,6 @@ static ty_status pile_cut(kit* k, ty_error* error)
     if (taken < count)
         return TY_OK;
     return ty_error_set(error, TY_BAD_INPUT, "container.cut: it takes all %d elements away", count);
-}
-
-ty_status kit_pile(kit* k, ty_error* error)
-{
-    ty_status status = mixture_init(k->recipe, &k->mix, error);
-    if (status == TY_OK)
-        status = ty_container_create(&k->recipe->container, k->workers, &k->container, error);
-    for (int layer = k->recipe->layers.count; layer >= 0 && status == TY_OK; layer--)
-    {
-        mixture_select(&k->mix, layer); // layer 0 in the end
-        status = container_check(k, error);
-    }
-    if (status != TY_OK)
-        return status;
-    ty_pile_def def = ty_pile_def_default();
-    def.friction = k->recipe->settle.friction;
-    def.rolling = k->recipe->settle.rolling;
-    def.rate = k->recipe->settle.rate;
-    def.bridge = k->mechanics.bridge;
-    def.grains = k->mix.grains;
-    def.grain_count = k->mix.grain_count;
-    def.container = k->container;
-    k->pile = ty_pile_create(&def);
-    return TY_OK;
 }
 
 // Interrupted: the pile as it stands, if its state is kept, so that one can go on.
@@ -397,3 +239,42 @@ ty_status ty_aggregate_film(const void* def, ty_workers* workers, const ty_aggre
         return ty_error_set(error, TY_BAD_INPUT, "animate.frames is 0: say how many frames the film has");
     return recipe_make(def, NULL, workers, NULL, sink, error);
 }
+
+// --- the generator ---
+
+static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_error* error)
+{
+    if (out->film.put)
+        return ty_aggregate_film(def, workers, &out->film, error);
+    if (out->state)
+        return ty_aggregate_resume(def, out->state->data, out->state->size, workers, &out->aggregate, error);
+    return ty_aggregate_make(def, workers, &out->aggregate, error);
+}
+
+static ty_status element(const void* def, int number, ty_mesh** out, ty_error* error)
+{
+    mixture m;
+    *out = NULL;
+    ty_status status = mixture_init(def, &m, error);
+    if (status != TY_OK)
+        return status;
+    if (number < 1 || number > m.grain_count)
+        status =
+            ty_error_set(error, TY_BAD_INPUT, "there is no element %d: the recipe has 1..%d", number, m.grain_count);
+    else
+    {
+        *out = m.grains[number - 1].mesh;
+        m.grains[number - 1].mesh = NULL;
+    }
+    mixture_term(&m);
+    return status;
+}
+
+const ty_generator ty_aggregate_generator = {
+    .kind = "aggregate",
+    .build_id = AGGREGATE_BUILD_ID,
+    .product = TY_PRODUCT_AGGREGATE,
+    .params = &ty_aggregate_recipe_table,
+    .make = make,
+    .element = element,
+};

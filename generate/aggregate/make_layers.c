@@ -4,11 +4,6 @@
 #include <stdio.h>
 #include <tsuya/base/log.h>
 
-static const ty_layer_def* layer_def(const ty_aggregate_recipe* r, int layer)
-{
-    return (const ty_layer_def*)r->layers.items + (layer - 1);
-}
-
 ty_status layers_check(const ty_aggregate_recipe* r, ty_error* error)
 {
     if (r->layers.count == 0)
@@ -16,13 +11,6 @@ ty_status layers_check(const ty_aggregate_recipe* r, ty_error* error)
     if (r->settle.solver == TY_SOLVER_XPBD)
         return ty_error_set(error, TY_BAD_INPUT, "layers: they settle as rigid elements; take solver impulse");
     return TY_OK;
-}
-
-void kit_layer_select(kit* k, int layer)
-{
-    mixture_select(&k->mix, layer);
-    k->layer = layer;
-    k->fill = layer > 0 ? &layer_def(k->recipe, layer)->fill : &k->recipe->fill;
 }
 
 // Selects the layer and lets it fall onto the pile.
@@ -81,4 +69,31 @@ void kit_refill(kit* k)
         mixture_select(&k->mix, layer);
         kit_drop(k, missing[layer]);
     }
+}
+
+ty_status kit_rest(kit* k, ty_error* error)
+{
+    int allowed = 20 + k->count / 4;
+    ty_pile_end end = TY_PILE_LOST;
+    while (end == TY_PILE_LOST && k->lost <= allowed)
+    {
+        int lost;
+        end = k->resumed ? ty_pile_settle_on(k->pile, k->recipe->settle.max_seconds, k->workers, &lost)
+                         : ty_pile_settle(k->pile, k->recipe->settle.max_seconds, k->workers, &lost);
+        k->resumed = false;
+        k->rest = end == TY_PILE_REST;
+        ty_status status = end == TY_PILE_LOST ? TY_OK : kit_keep(k, end != TY_PILE_REST, error);
+        if (status != TY_OK)
+            return status;
+        k->lost += lost;
+        k->replaced += lost;
+        kit_refill(k);
+    }
+    if (end == TY_PILE_CANCELED)
+        return kit_interrupted("settling", error);
+    if (end == TY_PILE_LOST)
+        return ty_error_set(error, TY_BAD_INPUT,
+                            "fill.count: %d grains do not stay in the container: %d fell over its rim", k->count,
+                            k->lost);
+    return TY_OK;
 }

@@ -35,7 +35,7 @@ static ty_hash build_hash(void)
     const size_t sizes[2] = {sizeof(saved_kit), sizeof(ty_pile_metrics)};
     ty_hasher* hasher = ty_hasher_create();
     ty_hasher_add_string(hasher, TSUYA_VERSION);
-    ty_hasher_add_string(hasher, ty_aggregate_generator.build_id);
+    ty_hasher_add_string(hasher, AGGREGATE_BUILD_ID);
     ty_hasher_add(hasher, sizes, sizeof sizes);
     return ty_hasher_end(hasher);
 }
@@ -81,7 +81,7 @@ static ty_hash recipe_hash(const kit* k)
     static const char* const free_rows[] = {"settle.max_seconds", "settle.state", "settle.watch", "container.cut",
                                             NULL};
     ty_hasher* hasher = ty_hasher_create();
-    ty_params_add_to_hash(ty_aggregate_recipe_params(), k->recipe, free_rows, hasher);
+    ty_params_add_to_hash(&ty_aggregate_recipe_table, k->recipe, free_rows, hasher);
     elements_add(&k->mix, hasher);
     container_add(k->container, hasher);
     return ty_hasher_end(hasher);
@@ -149,7 +149,7 @@ static ty_status head_check(const kit* k, const saved_kit* s, const uint8_t* byt
     if (memcmp(s->magic, magic, sizeof magic) != 0 || !same_hash(s->build, build_hash()))
         return ty_error_set(error, TY_BAD_FILE,
                             "the state to go on from is of another version of tsuya (this is %s, %s)", TSUYA_VERSION,
-                            ty_aggregate_generator.build_id);
+                            AGGREGATE_BUILD_ID);
     if (!same_hash(s->checksum, ty_hash_bytes(bytes + CHECKED_FROM, size - CHECKED_FROM)))
         return ty_error_set(error, TY_BAD_FILE, "the state to go on from is damaged: the checksum does not fit");
     if (!same_hash(s->recipe, recipe_hash(k)))

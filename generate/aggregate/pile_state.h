@@ -180,14 +180,16 @@ static inline int pile_ball_count(const ty_pile* pile, int body)
 
 // pile.c
 void pile_each_body(ty_pile* pile, ty_workers* workers, ty_range_fn* fn, void* context); // ranges of PILE_PIECE
-void pile_refresh(ty_pile* pile, int body); // frame, balls and inertia from position and rotation
 void pile_turn(ty_body* body, ty_vec3 rotation_vector);
-float pile_wall(const ty_pile* pile, int wall, ty_vec3 p, ty_vec3* normal);
+
+// pile_body.c
+void pile_refresh(ty_pile* pile, int body); // frame, balls and inertia from position and rotation
 
 // bend.c
 bend pile_bend_none(const ty_element* element);
 
 // wall.c
+float pile_wall(const ty_pile* pile, int wall, ty_vec3 p, ty_vec3* normal);
 int pile_moving_walls(const ty_pile* pile);                           // how many
 void pile_walls_place(ty_pile* pile);                                 // where they are at this time
 void pile_walls_see(ty_pile* pile);                                   // candidates are about to be found
@@ -213,8 +215,6 @@ void pile_body_sleep(motion* m);
 void pile_contacts_prepare(ty_pile* pile, ty_workers* workers); // those of the substep, with the kept impulses' kick
 void pile_contacts_solve(ty_pile* pile, ty_workers* workers);
 void pile_contacts_relax(ty_pile* pile, ty_workers* workers);
-// Gap, normal and arms of a touch; false when its gap is above limit.
-bool pile_contact_place(const ty_pile* pile, const pair* p, const touch* t, float limit, contact* c);
 
 // bridge.c
 void pile_bridge_init(ty_pile* pile);

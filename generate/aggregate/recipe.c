@@ -2,36 +2,6 @@
 // The parameter tables of an aggregate's recipe and their defaults.
 #include "recipe_tables.h"
 
-ty_aggregate_recipe ty_aggregate_recipe_default(void)
-{
-    ty_pile_def pile = ty_pile_def_default();
-    return (ty_aggregate_recipe){
-        .element = ty_element_def_default(),
-        .container = ty_container_def_default(),
-        .fill = {.count = 2000,
-                 .density = 0.60f,
-                 .heap = 12e-3f,
-                 .tilt = TY_PI / 3.0f,
-                 .roll = TY_PI,
-                 .sprinkle = 0.06f,
-                 .sweeps = 200,
-                 .thesis = {.refine = 1.0f, .offset = 0.0f, .remove = 1.0f},
-                 .pour = {.radius = 0.015f, .rate = 500.0f, .speed = 0.5f}},
-        .settle = {.friction = pile.friction,
-                   .rolling = pile.rolling,
-                   .max_seconds = 3.0f,
-                   .rate = pile.rate,
-                   .polish = 100,
-                   .solver = TY_SOLVER_IMPULSE,
-                   .cohesion = -1.0f,
-                   .adhesion = -1.0f},
-        .press = {.strain = 0.0f, .seconds = 0.6f, .from = TY_PRESS_ABOVE, .release = true},
-        .moisture = {.variation = 0.8f, .drying = 0.4f, .celsius = 10.0f, .cooked = -1.0f},
-        .animate = {.frames = 0, .fps = 24.0f},
-        .seed = {7},
-    };
-}
-
 // --- fill and layers ---
 
 static const char* const fill_starts[] = {"inflate", "thesis", "lattice", "pour", NULL};
@@ -193,51 +163,9 @@ static const ty_param recipe_rows[] = {
 };
 #undef OWNER
 
-static const ty_param_table recipe_table = {"aggregate",
-                                            "Grains that lie in a vessel, at rest.",
-                                            sizeof(ty_aggregate_recipe),
-                                            recipe_set_default,
-                                            recipe_rows,
-                                            TY_PARAM_COUNT(recipe_rows)};
-
-const ty_param_table* ty_aggregate_recipe_params(void)
-{
-    return &recipe_table;
-}
-
-static ty_status make(const void* def, ty_workers* workers, ty_made* out, ty_error* error)
-{
-    if (out->film.put)
-        return ty_aggregate_film(def, workers, &out->film, error);
-    if (out->state)
-        return ty_aggregate_resume(def, out->state->data, out->state->size, workers, &out->aggregate, error);
-    return ty_aggregate_make(def, workers, &out->aggregate, error);
-}
-
-static ty_status element(const void* def, int number, ty_mesh** out, ty_error* error)
-{
-    mixture m;
-    *out = NULL;
-    ty_status status = mixture_init(def, &m, error);
-    if (status != TY_OK)
-        return status;
-    if (number < 1 || number > m.grain_count)
-        status =
-            ty_error_set(error, TY_BAD_INPUT, "there is no element %d: the recipe has 1..%d", number, m.grain_count);
-    else
-    {
-        *out = m.grains[number - 1].mesh;
-        m.grains[number - 1].mesh = NULL;
-    }
-    mixture_term(&m);
-    return status;
-}
-
-const ty_generator ty_aggregate_generator = {
-    .kind = "aggregate",
-    .build_id = "aggregate 7",
-    .product = TY_PRODUCT_AGGREGATE,
-    .params = &recipe_table,
-    .make = make,
-    .element = element,
-};
+const ty_param_table ty_aggregate_recipe_table = {"aggregate",
+                                                  "Grains that lie in a vessel, at rest.",
+                                                  sizeof(ty_aggregate_recipe),
+                                                  recipe_set_default,
+                                                  recipe_rows,
+                                                  TY_PARAM_COUNT(recipe_rows)};

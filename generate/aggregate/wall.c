@@ -105,3 +105,10 @@ float ty_pile_time(const ty_pile* pile)
 {
     return pile->time;
 }
+
+float ty_fill_top_height(const ty_fill_top* top, ty_vec3 p)
+{
+    float x = ty_sqr(p.x / top->radius_x), z = ty_sqr(p.z / top->radius_z);
+    float share = top->turned ? 1.0f - x - z : ty_max(0.0f, 1.0f - x) * ty_max(0.0f, 1.0f - z);
+    return top->level + top->crown * ty_max(0.0f, share);
+}

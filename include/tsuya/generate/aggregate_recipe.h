@@ -153,7 +153,7 @@ typedef struct ty_aggregate_recipe
 } ty_aggregate_recipe;
 
 ty_aggregate_recipe ty_aggregate_recipe_default(void); // 2,000 grains of cooked japonica rice in the default bowl
-const ty_param_table* ty_aggregate_recipe_params(void);
+extern const ty_param_table ty_aggregate_recipe_table;
 const ty_param_table* ty_layer_params(void);
 ty_mechanics ty_mechanics_of(const ty_aggregate_recipe* recipe);
 float ty_moisture_swelling(float wet_basis);         // lengths of rice against those when cooked
