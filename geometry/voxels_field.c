@@ -16,6 +16,7 @@ typedef struct field
     mesh_parts parts;
     uint32_t* begin; // of each slab, in items
     uint32_t* items; // triangles that reach into the slab
+    bool* twice;     // [layers] rows wind about something more than once there: parts overlap
     int parity;      // of the nodes that ask now
 } field;
 
@@ -132,6 +133,7 @@ static void layers_sign(void* context, int64_t begin, int64_t end, int worker)
             for (size_t i = row; i < row + (size_t)v->size[0]; i++)
             {
                 turns += f->s.turns[i];
+                f->twice[k] |= turns > 1 || turns < -1;
                 v->values[i] = turns != 0 ? -sqrtf(v->values[i]) : sqrtf(v->values[i]);
             }
         }
@@ -141,6 +143,7 @@ static bool field_run(field* f, ty_workers* workers)
 {
     int layers = f->s.v->size[2], slabs = (layers + SLAB - 1) / SLAB;
     memset(f->s.near, 0xff, voxels_count(f->s.v) * sizeof(int32_t));
+    f->twice = TY_ALLOC(bool, layers);
     if (!mesh_parts_find(f->s.mesh, &f->parts) || !slabs_fill(f, slabs))
         return false;
     ty_parallel_all(workers, slabs, 1, slabs_scan, f);
@@ -150,7 +153,12 @@ static bool field_run(field* f, ty_workers* workers)
     for (f->parity = 0; f->parity < 2; f->parity++)
         ty_parallel_all(workers, layers, 2, layers_ask, f);
     ty_parallel_all(workers, layers, 2, layers_sign, f);
-    return f->parts.open_count == 0 || voxels_open_fill(&f->s, &f->parts, workers);
+    if (f->parts.open_count > 0 && !voxels_open_fill(&f->s, &f->parts, workers))
+        return false;
+    bool overlap = f->parts.open_count > 0 && !f->parts.closed;
+    for (int k = 0; k < layers; k++)
+        overlap |= f->twice[k];
+    return !overlap || voxels_buried_pass(&f->s, workers);
 }
 
 ty_status ty_voxels_around_mesh(const ty_mesh* mesh, float step, float margin, ty_workers* workers, ty_voxels* out,
@@ -174,6 +182,7 @@ ty_status ty_voxels_around_mesh(const ty_mesh* mesh, float step, float margin, t
     mesh_parts_term(&f.parts);
     ty_free(f.begin);
     ty_free(f.items);
+    ty_free(f.twice);
     ty_free(f.s.site);
     ty_free(f.s.turns);
     if (status == TY_OK && nearest)

@@ -153,6 +153,37 @@ static ty_vec3 facet_normal(const roots_host* host, uint32_t triangle)
     return ty_length_sqr(n) > 0.0f ? ty_normalize(n) : ty_vec3_make(0.0f, 1.0f, 0.0f);
 }
 
+// Of a place inside: whether its closest point is on a face that lies within another part of the host, where the field
+// knows better.
+static bool is_buried(const roots_host* host, const ty_closest* c, ty_vec3 away)
+{
+    ty_vec3 g, beyond = ty_mad(c->position, away, -0.75f * host->field.step);
+    return host_field_value(&host->field, beyond, &g) < -0.25f * host->field.step;
+}
+
+// The distance of a place inside from the outer face that it would come out by, which is sought from outside, up along
+// the field; where that finds a face that the place is not under, from farther over that one.
+static float outer_exact(const roots_host* host, ty_vec3 p, float d, ty_vec3* normal)
+{
+    float step = host->field.step;
+    ty_vec3 out = ty_mad(p, *normal, step - d);
+    for (int i = 0; i < 3; i++)
+    {
+        ty_closest c;
+        if (!ty_world_closest(host->world, host->prototype, out, 3.0f * step, &c) || c.distance < 1e-3f * step)
+            break;
+        ty_vec3 n = ty_mul(ty_sub(out, c.position), 1.0f / c.distance);
+        float height = ty_dot(ty_sub(p, c.position), n);
+        if (height < 0.0f)
+        {
+            *normal = n;
+            return height;
+        }
+        out = ty_mad(out, n, step);
+    }
+    return d;
+}
+
 // The distance of the mesh where the field says d.
 static float mesh_exact(const roots_host* host, ty_vec3 p, float d, ty_vec3* normal)
 {
@@ -167,6 +198,8 @@ static float mesh_exact(const roots_host* host, ty_vec3 p, float d, ty_vec3* nor
         return ty_dot(ty_sub(p, c.position), *normal) < 0.0f ? -c.distance : c.distance;
     }
     ty_vec3 away = ty_mul(ty_sub(p, c.position), 1.0f / c.distance);
+    if (d < 0.0f && is_buried(host, &c, away))
+        return outer_exact(host, p, d, normal);
     float side = fabsf(d) > 0.75f * step ? (d < 0.0f ? -1.0f : 1.0f) : side_of(host, &c, away);
     *normal = ty_mul(away, side);
     return side * c.distance;

@@ -9,7 +9,32 @@
 
 // --- segments ---
 
-static roots_segment segment_make(const roots_point* a, const roots_point* b, int line, int point)
+// How a root lies on the host at a point of its line, m.
+typedef struct resting
+{
+    float depth; // how deep it may reach under it
+    float fill;  // how far its lower half is drawn out to get there
+} resting;
+
+#define FILL_MOST 0.6f    // of the radius
+#define DEPTH_LEAST 0.05f // of the radius, where it touches the host at all
+
+// The underside has to come down to the depth that it may have, and a bit farther: what lies on the host fills what is
+// rough under it, and what comes near it takes hold. The host cuts off what is too much. With a `sink` of 0 roots only
+// touch it.
+static resting resting_at(const roots_skin* skin, const roots_point* p)
+{
+    if (!skin->host || skin->recipe->growth.sink <= 0.0f)
+        return (resting){p->sink * p->r, 0.0f};
+    float lift = roots_host_value(skin->host, p->p, NULL) - (p->flat - p->sink) * p->r, most = FILL_MOST * p->r;
+    if (p->sink <= 0.0f && lift > most)
+        return (resting){0.0f, 0.0f};
+    float fill = lift + 0.15f * p->r + 0.35f * skin->host->field.step;
+    return (resting){ty_max(p->sink, DEPTH_LEAST) * p->r, ty_clamp(fill, 0.2f * p->r, most)};
+}
+
+static roots_segment segment_make(const roots_point* a, const roots_point* b, resting ra, resting rb, int line,
+                                  int point)
 {
     ty_vec3 d = ty_sub(b->p, a->p);
     float length = ty_length_sqr(d), ea = 1.0f / ty_sqr(a->flat) - 1.0f, eb = 1.0f / ty_sqr(b->flat) - 1.0f;
@@ -22,8 +47,10 @@ static roots_segment segment_make(const roots_point* a, const roots_point* b, in
                            .rd = b->r - a->r,
                            .ea = ea,
                            .ed = eb - ea,
-                           .sink_a = a->sink * a->r,
-                           .sink_d = b->sink * b->r - a->sink * a->r,
+                           .sink_a = ra.depth,
+                           .sink_d = rb.depth - ra.depth,
+                           .fill_a = ra.fill,
+                           .fill_d = rb.fill - ra.fill,
                            .line = line,
                            .point = point};
 }
@@ -51,15 +78,20 @@ static bool segments_make(roots_skin* skin)
     if (!skin->segments)
         return false;
     for (int line = 0; line < net->line_count; line++)
+    {
+        resting ra, rb = resting_at(skin, &net->points[net->lines[line].first]);
         for (int i = 0; i + 1 < net->lines[line].count; i++)
         {
             int point = net->lines[line].first + i;
             const roots_point *a = &net->points[point], *b = a + 1;
             roots_segment* s = &skin->segments[skin->segment_count++];
-            *s = segment_make(a, b, line, point);
+            ra = rb;
+            rb = resting_at(skin, b);
+            *s = segment_make(a, b, ra, rb, line, point);
             s->open_a = open_at(net, &net->lines[line], a);
             s->open_d = open_at(net, &net->lines[line], b) - s->open_a;
         }
+    }
     return true;
 }
 
@@ -68,6 +100,7 @@ static ty_bounds segment_bounds(const roots_skin* skin, const roots_segment* s)
     const ty_roots_recipe* recipe = skin->recipe;
     float r = ty_max(s->ra, s->ra + s->rd);
     float reach = r * (1.0f + ROOTS_RELIEF_MOST * recipe->bark + recipe->join) + 3.0f * skin->step;
+    reach += ty_max(s->fill_a, s->fill_a + s->fill_d);
     ty_vec3 margin = {reach, reach, reach}, b = ty_add(s->a, s->d);
     return (ty_bounds){ty_sub(ty_min3(s->a, b), margin), ty_add(ty_max3(s->a, b), margin)};
 }
@@ -188,8 +221,8 @@ typedef struct raising
     ty_mesh* mesh;
 } raising;
 
-// Between the grid's nodes the net knows the field in part: each vertex goes to the zero of the roots themselves, as
-// far as a part of a cell, and out by the relief of the bark, and not too deep.
+// Between the grid's nodes the net knows the field in part, of roots hardly wider than a cell least: each vertex goes
+// to the zero of the roots themselves, some parts of a cell, and out by the relief of the bark, and not too deep.
 static void vertices_raise(void* context, int64_t begin, int64_t end, int worker)
 {
     const raising* r = context;
@@ -199,13 +232,78 @@ static void vertices_raise(void* context, int64_t begin, int64_t end, int worker
     {
         ty_vec3 *p = &r->mesh->positions[v], n;
         float relief;
-        roots_sample sample = roots_skin_look(r->skin, *p, &n, &relief);
+        roots_sample sample = roots_skin_look(r->skin, *p, &n, NULL);
+        for (int i = 0; i < 4 && sample.segment >= 0 && fabsf(sample.distance) > 0.1f * most; i++)
+        {
+            *p = ty_mad(*p, n, -ty_clamp(sample.distance, -most, most));
+            sample = roots_skin_look(r->skin, *p, &n, NULL);
+        }
+        sample = roots_skin_look(r->skin, *p, &n, &relief);
         if (sample.segment < 0)
             continue;
         *p = ty_mad(*p, n, relief - ty_clamp(sample.distance, -most, most));
         roots_skin_keep(r->skin, sample, p);
     }
 }
+
+// --- the underside ---
+
+// What the triangles about each vertex face, of any length.
+static ty_vec3* faces_sum(const ty_mesh* mesh)
+{
+    ty_vec3* out = TY_TRY_ALLOC(ty_vec3, mesh->vertex_count);
+    for (uint32_t t = 0; out && t < mesh->triangle_count; t++)
+    {
+        const uint32_t* c = mesh->triangles[t];
+        ty_vec3 p = mesh->positions[c[0]];
+        ty_vec3 n = ty_cross(ty_sub(mesh->positions[c[1]], p), ty_sub(mesh->positions[c[2]], p));
+        for (int k = 0; k < 3; k++)
+            out[c[k]] = ty_add(out[c[k]], n);
+    }
+    return out;
+}
+
+typedef struct seating
+{
+    const roots_skin* skin;
+    ty_mesh* mesh;
+    const ty_vec3* faces;
+} seating;
+
+// Roots hardly wider than a cell may have no vertices but those on their flanks: what faces the host from a little way
+// above it goes down into it.
+static void vertices_seat(void* context, int64_t begin, int64_t end, int worker)
+{
+    const seating* s = context;
+    (void)worker;
+    for (int64_t v = begin; v < end; v++)
+    {
+        ty_vec3 *p = &s->mesh->positions[v], up, face = s->faces[v];
+        float height = roots_host_value(s->skin->host, *p, &up), along = ty_dot(up, face);
+        if (height < 0.0f || along > -0.7f * ty_length(up) * ty_length(face))
+            continue;
+        roots_sample sample = roots_skin_at(s->skin, *p);
+        if (sample.segment < 0)
+            continue;
+        roots_point own = roots_skin_point(s->skin, sample);
+        if (own.sink > 0.0f && height < FILL_MOST * own.r && ty_dot(ty_sub(*p, own.p), own.n) < 0.0f)
+            *p = ty_mad(*p, ty_normalize(up), -height - 0.5f * own.sink * own.r);
+    }
+}
+
+static ty_status surface_seat(const roots_skin* skin, ty_mesh* mesh, ty_workers* workers, ty_error* error)
+{
+    if (!skin->host)
+        return TY_OK;
+    seating s = {skin, mesh, faces_sum(mesh)};
+    if (!s.faces)
+        return ty_error_set(error, TY_NO_MEMORY, "no memory for %u vertices of roots", mesh->vertex_count);
+    ty_parallel_all(workers, mesh->vertex_count, 1024, vertices_seat, &s);
+    ty_free((void*)s.faces);
+    return TY_OK;
+}
+
+// --- all of it ---
 
 static ty_status surface_find(const roots_skin* skin, ty_workers* workers, ty_mesh** out, ty_net_pieces* pieces,
                               ty_error* error)
@@ -248,6 +346,8 @@ ty_status roots_skin_mesh(const roots_skin* skin, ty_workers* workers, ty_mesh**
     double start = ty_time_now();
     if (!ty_parallel_for(workers, (*out)->vertex_count, 1024, vertices_raise, &r))
         status = ty_error_set(error, TY_INTERRUPTED, "interrupted while the surface of roots was made");
+    if (status == TY_OK)
+        status = surface_seat(skin, *out, workers, error);
     double raised = ty_time_now();
     if (status == TY_OK)
         status = ty_mesh_mend_corners(*out, corner, NULL, error);

@@ -12,6 +12,7 @@ typedef struct roots_segment
     float ra, rd;   // m
     float ea, ed;   // 1 / flat^2 - 1
     float sink_a, sink_d;
+    float fill_a, fill_d; // m, by which the lower half of the section is drawn out towards the host
     float open_a, open_d; // 0..1, how far it is out of what it grows from and into: within that it does not swell it
     int line, point;      // it goes from point to point + 1
 } roots_segment;
@@ -35,6 +36,11 @@ struct roots_skin
 static inline float roots_segment_radius(const roots_segment* s, float t)
 {
     return s->ra + t * s->rd;
+}
+
+static inline float roots_segment_fill(const roots_segment* s, float t)
+{
+    return s->fill_a + t * s->fill_d;
 }
 
 // The largest relief of bark, of the radius and of the recipe's `bark`.
@@ -69,7 +75,7 @@ static inline float roots_skin_hold(const roots_skin* skin, float distance, floa
                                     float* part)
 {
     float over = -(roots_host_value(skin->host, p, NULL) + depth);
-    return roots_cut(distance, over, ty_max(0.3f * radius, skin->step), part);
+    return roots_cut(distance, over, ty_max(0.15f * radius, 0.5f * skin->step), part);
 }
 
 #define ROOTS_TOP_EDGE 0.4e-3f // m, rounding of the cut at the top

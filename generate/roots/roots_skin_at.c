@@ -16,13 +16,14 @@ static ty_vec3 normal(const roots_segment* s, float t)
     return ty_mad(s->na, s->nd, t);
 }
 
-// A flat section is stretched to a round one.
+// A flat section is stretched to a round one, its lower half drawn out by the fill.
 static float segment_distance(const roots_segment* s, ty_vec3 p, float* t)
 {
     *t = along(s, p);
     ty_vec3 q = ty_sub(p, ty_mad(s->a, s->d, *t));
-    float height = ty_dot(q, normal(s, *t));
-    return sqrtf(ty_length_sqr(q) + height * height * (s->ea + *t * s->ed)) - roots_segment_radius(s, *t);
+    float height = ty_dot(q, normal(s, *t)), side = ty_length_sqr(q) - height * height;
+    height += ty_clamp(-height, 0.0f, roots_segment_fill(s, *t));
+    return sqrtf(ty_max(side, 0.0f) + height * height * (1.0f + s->ea + *t * s->ed)) - roots_segment_radius(s, *t);
 }
 
 // Flutes along the root and small swellings across it.
@@ -246,9 +247,13 @@ bool roots_skin_keep(const roots_skin* skin, roots_sample sample, ty_vec3* p)
     ty_vec3 n;
     if (roots_host_value(skin->host, *p, NULL) > 2.0f * step - most)
         return false;
-    float height = roots_host_exact(skin->host, *p, most + 2.0f * step, &n);
-    if (height < -most)
+    for (int i = 0; i < 6; i++) // between two surfaces one move leads under the other
+    {
+        float height = roots_host_exact(skin->host, *p, most + 2.0f * step, &n);
+        if (height >= -most)
+            break;
         *p = ty_mad(*p, n, -most - height);
+    }
     return true;
 }
 
@@ -258,12 +263,13 @@ roots_point roots_skin_point(const roots_skin* skin, roots_sample sample)
 {
     const roots_point* a = &skin->network->points[skin->segments[sample.segment].point];
     const roots_point* b = a + 1;
-    float t = sample.at;
+    const roots_segment* s = &skin->segments[sample.segment];
+    float t = sample.at, r = ty_lerp(a->r, b->r, t);
     return (roots_point){.p = ty_lerp3(a->p, b->p, t),
                          .n = ty_lerp3(a->n, b->n, t),
-                         .r = ty_lerp(a->r, b->r, t),
+                         .r = r,
                          .flat = ty_lerp(a->flat, b->flat, t),
-                         .sink = ty_lerp(a->sink, b->sink, t),
+                         .sink = roots_segment_depth(s, t) / r,
                          .s = ty_lerp(a->s, b->s, t),
                          .birth = ty_lerp(a->birth, b->birth, t)};
 }

@@ -48,9 +48,14 @@ static void segment_meet(const roots_segment* restrict s, int32_t number, const 
         float px = at->x[i] - s->a.x, py = at->y[i] - s->a.y, pz = at->z[i] - s->a.z;
         float qx = px - t[i] * s->d.x, qy = py - t[i] * s->d.y, qz = pz - t[i] * s->d.z;
         float nx = s->na.x + t[i] * s->nd.x, ny = s->na.y + t[i] * s->nd.y, nz = s->na.z + t[i] * s->nd.z;
-        float h = qx * nx + qy * ny + qz * nz;
-        d[i] = sqrtf(qx * qx + qy * qy + qz * qz + h * h * (s->ea + t[i] * s->ed)) - (s->ra + t[i] * s->rd);
+        float h = qx * nx + qy * ny + qz * nz, fill = s->fill_a + t[i] * s->fill_d;
+        float side = qx * qx + qy * qy + qz * qz - h * h, up = h + fill;
+        up = up > 0.0f ? 0.0f : up;
+        up = h > up ? h : up;
+        d[i] = (side < 0.0f ? 0.0f : side) + up * up * (1.0f + s->ea + t[i] * s->ed);
     }
+    for (int i = 0; i < NODES; i++)
+        d[i] = sqrtf(d[i]) - (s->ra + t[i] * s->rd);
     for (int i = 0; i < NODES; i++)
     {
         bool nearer = d[i] < best->distance[i];
@@ -79,7 +84,8 @@ static range segment_range(const roots_segment* s, ty_vec3 middle, float half)
     float q = ty_length(ty_sub(middle, ty_mad(s->a, s->d, t)));
     float stretch = sqrtf(1.0f + ty_max(s->ea, s->ea + s->ed)) * 1.05f; // normals between points are a bit off unit
     float most = ty_max(s->ra, s->ra + s->rd), least = ty_min(s->ra, s->ra + s->rd);
-    return (range){q - half - most, (q + half) * stretch - least};
+    float fill = ty_max(s->fill_a, s->fill_a + s->fill_d);
+    return (range){q - half - most - fill, (q + half) * stretch - least};
 }
 
 // --- roots together ---

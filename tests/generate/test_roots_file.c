@@ -30,10 +30,10 @@ static roots_figures grow(const char* name, const ty_roots_recipe* recipe, const
     return figures;
 }
 
-// What roots promise is a corner of 5 degrees at least, gaps below 0.1 radii for 99 % and bends of 100 degrees, 99 %
-// above 120. Bends they keep; of corners and gaps these are the bounds that they keep on all six hosts.
-#define CORNER_LEAST 3.0
-#define GAP 0.7
+// What roots promise: corners of 5 degrees at least (99.9 % of 15), gaps below 0.1 radii for 99 %, and bends of 100
+// degrees, 99 % above 120.
+#define CORNER_LEAST 5.0
+#define GAP 0.1
 #define BEND_LEAST 100.0
 #define BEND_1 120.0
 

@@ -35,9 +35,11 @@ TY_CHECKED ty_status ty_voxels_from_mesh(const ty_mesh* mesh, float step, float 
 // The same about any mesh with welds: within a twentieth of a step next to the surface, a tenth up to four steps, half
 // a step beyond. Closed parts hold a space in where rows of nodes wind about them at all, turned inside out or not.
 // Open ones do where their generalised winding number (Barill et al. 2018) is above one half: a lid closes their
-// opening. Sheets, about which it is nowhere clearly more, have two outsides. nearest, where it is not NULL: the
-// triangle nearest to each node, which the caller frees with ty_free. The same bits for any number of workers.
-#define TY_VOXELS_AROUND_MESH_BUILD "around mesh 1" // changes when the same mesh would give other values
+// opening. Sheets, about which it is nowhere clearly more, have two outsides. Where parts overlap, the distance inside
+// counts from what is outside of all of them, for some 16 steps down and within three quarters of a step. nearest,
+// where it is not NULL: the triangle nearest to each node, which the caller frees with ty_free. The same bits for any
+// number of workers.
+#define TY_VOXELS_AROUND_MESH_BUILD "around mesh 2" // changes when the same mesh would give other values
 TY_CHECKED ty_status ty_voxels_around_mesh(const ty_mesh* mesh, float step, float margin, ty_workers* workers,
                                            ty_voxels* out, int32_t** nearest, ty_error* error);
 void ty_voxels_term(ty_voxels* voxels); // a zeroed one is allowed
