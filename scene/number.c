@@ -151,7 +151,7 @@ const char* ty_param_type_name(ty_param_type type)
         [TY_PARAM_COLOR_INPUT] = "colour input",
         [TY_PARAM_VECTOR_INPUT] = "vector input",
         [TY_PARAM_GROUP] = "mapping",
-        [TY_PARAM_BRIEF_GROUP] = "number or mapping",
+        [TY_PARAM_BRIEF_GROUP] = "value or mapping",
         [TY_PARAM_LIST] = "list",
         [TY_PARAM_POINTS] = "points",
         [TY_PARAM_POINTS2] = "points",

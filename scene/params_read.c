@@ -242,14 +242,15 @@ static bool is_group_written(const ty_node* node)
     return node->kind == TY_NODE_MAP;
 }
 
-// A mapping of the group, else the input of its first row under the group's name.
+// A mapping of the group, else what its first row is under the group's name.
 static bool read_brief(ty_reader* reader, ty_node* node, const ty_param* row, void* field)
 {
-    if (is_group_written(node))
-        return read_keys(reader, node, row->group, field, NULL);
     ty_param first = row->group->params[0];
+    bool is_input = first.type == TY_PARAM_SCALAR_INPUT || first.type == TY_PARAM_COLOR_INPUT;
+    if (is_input ? is_group_written(node) : node->kind == TY_NODE_MAP)
+        return read_keys(reader, node, row->group, field, NULL);
     first.name = row->name;
-    return ty_param_read_input(reader, node, &first, (ty_input*)((char*)field + first.offset));
+    return ty_param_read(reader, node, &first, (char*)field + first.offset);
 }
 
 bool ty_param_read(ty_reader* reader, ty_node* node, const ty_param* row, void* field)

@@ -143,7 +143,7 @@ static void add_type(ty_text* out, const ty_param* row)
         ty_text_format(out, "{\"$ref\": \"#/$defs/%s\"}", row->group->name);
         break;
     case TY_PARAM_BRIEF_GROUP:
-        add_input(out, &row->group->params[0]);
+        add_type(out, &row->group->params[0]);
         ty_text_format(out, ", {\"$ref\": \"#/$defs/%s\"}", row->group->name);
         break;
     case TY_PARAM_STRINGS:

@@ -34,7 +34,7 @@ static ty_status obstacles_make(const ty_roots_recipe* recipe, const char* cache
     ty_mesh* mesh;
     if (recipe->obstacles.count == 0)
         return TY_OK;
-    ty_status status = host_objects_make("obstacles", &recipe->obstacles, &mesh, error);
+    ty_status status = host_objects_make("obstacles", &recipe->obstacles, &mesh, NULL, error);
     if (status != TY_OK)
         return status;
     status = host_field_make(mesh, recipe->host.resolution, cache, workers, &out->obstacles, NULL, error);
@@ -47,10 +47,11 @@ ty_status roots_host_init(const ty_roots_recipe* recipe, const char* cache, ty_w
 {
     const ty_roots_host_def* def = &recipe->host;
     int32_t* nearest = NULL;
-    bool painted = (def->avoid && def->avoid[0]) || (def->attract && def->attract[0]);
+    host_parts parts = {0};
+    bool painted = host_is_painted(def);
     double start = ty_time_now();
     *out = (roots_host){.has_floor = def->floor};
-    ty_status status = host_mesh_make(def, &out->mesh, error);
+    ty_status status = host_mesh_make(def, &out->mesh, &parts, error);
     if (status == TY_OK)
         status = radius_check(recipe, out->mesh, error);
     if (status == TY_OK)
@@ -59,8 +60,9 @@ ty_status roots_host_init(const ty_roots_recipe* recipe, const char* cache, ty_w
         status =
             host_field_make(out->mesh, def->resolution, cache, workers, &out->field, painted ? &nearest : NULL, error);
     if (status == TY_OK)
-        status = host_masks_make(out, def, nearest, workers, error);
+        status = host_masks_make(out, def, &parts, nearest, workers, error);
     ty_free(nearest);
+    host_parts_term(&parts);
     if (status == TY_OK)
         status = obstacles_make(recipe, cache, workers, out, error);
     if (status == TY_OK)

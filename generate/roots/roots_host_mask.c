@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is painted on a host: masks about its surface, and places where roots start.
+// What is painted on a host: by attributes of its vertices and by textures, kept at the nodes about its surface.
 #include "roots_host.h"
 #include <stdio.h>
 #include <string.h>
@@ -44,31 +44,95 @@ ty_status host_channel_find(const ty_mesh* mesh, const char* key, const char* na
     return ty_error_set(error, TY_BAD_INPUT, "%s: '%.100s'; the host's vertices have %s", key, name, names);
 }
 
+// --- sources ---
+
+// What brings a mask on one part of the host: an attribute, a texture, or nothing.
+typedef struct source
+{
+    host_channel channel;
+    host_texture texture;
+} source;
+
+static bool is_said(const ty_roots_mask_def* def)
+{
+    return (def->attribute && def->attribute[0]) || (def->texture && def->texture[0]);
+}
+
+ty_status host_mask_check(const ty_mesh* mesh, const char* key, const ty_roots_mask_def* def, ty_error* error)
+{
+    host_channel channel;
+    if (!is_said(def))
+        return TY_OK;
+    if (def->attribute && def->attribute[0] && def->texture && def->texture[0])
+        return ty_error_set(error, TY_BAD_INPUT, "%s: an attribute or a texture, not both", key);
+    if (def->attribute && def->attribute[0])
+        return host_channel_find(mesh, key, def->attribute, &channel, error);
+    if (!mesh->uvs)
+        return ty_error_set(error, TY_BAD_INPUT, "%s.texture: the host has no texture coordinates (uv)", key);
+    return TY_OK;
+}
+
+// On failure the caller frees what out holds all the same.
+static ty_status source_open(const roots_host* host, const char* key, const ty_roots_mask_def* def, source* out,
+                             ty_error* error)
+{
+    ty_status status = host_mask_check(host->mesh, key, def, error);
+    if (status != TY_OK || !is_said(def))
+        return status;
+    if (def->texture && def->texture[0])
+        return host_texture_read(key, def, &out->texture, error);
+    return host_channel_find(host->mesh, key, def->attribute, &out->channel, error);
+}
+
 // --- masks ---
 
 typedef struct baking
 {
     const roots_host* host;
+    const host_parts* parts;
     const int32_t* nearest;
-    host_channel channel;
+    source* sources; // one for all parts, then one of each of them
+    bool* own;       // of each part: it has one
     uint8_t* out;
 } baking;
 
+static const source* source_of(const baking* b, uint32_t triangle)
+{
+    int low = 0, high = b->parts->count - 1;
+    while (low < high)
+    {
+        int middle = (low + high) / 2;
+        if (triangle < b->parts->ends[middle])
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return &b->sources[b->own[low] ? 1 + low : 0];
+}
+
 // The closest point is found by areas of the foot of p in the plane of the triangle, held within it: masks need no
 // more.
-static float triangle_value(const baking* b, int32_t triangle, ty_vec3 p)
+static float triangle_value(const baking* b, uint32_t triangle, ty_vec3 p)
 {
-    const uint32_t* c = b->host->mesh->triangles[triangle];
-    const ty_vec3* at = b->host->mesh->positions;
+    const ty_mesh* mesh = b->host->mesh;
+    const source* from = source_of(b, triangle);
+    const uint32_t* c = mesh->triangles[triangle];
+    const ty_vec3* at = mesh->positions;
     ty_vec3 n = ty_cross(ty_sub(at[c[1]], at[c[0]]), ty_sub(at[c[2]], at[c[0]]));
     float sum = 0.0f, weights = 1e-30f;
+    ty_vec2 uv = {0.0f, 0.0f};
     for (int k = 0; k < 3; k++)
     {
         ty_vec3 q = at[c[(k + 1) % 3]], r = at[c[(k + 2) % 3]];
         float w = ty_max(ty_dot(n, ty_cross(ty_sub(q, p), ty_sub(r, p))), 0.0f);
-        sum += w * b->channel.values[(size_t)c[k] * (size_t)b->channel.stride];
         weights += w;
+        if (from->texture.values)
+            uv = (ty_vec2){uv.x + w * mesh->uvs[c[k]].x, uv.y + w * mesh->uvs[c[k]].y};
+        else if (from->channel.values)
+            sum += w * from->channel.values[(size_t)c[k] * (size_t)from->channel.stride];
     }
+    if (from->texture.values)
+        return host_texture_at(&from->texture, (ty_vec2){uv.x / weights, uv.y / weights});
     return sum / weights;
 }
 
@@ -85,32 +149,89 @@ static void layers_bake(void* context, int64_t begin, int64_t end, int worker)
                 if (fabsf(f->values[node]) > BAND * f->step)
                     continue;
                 ty_vec3 p = ty_mad(f->origin, ty_vec3_make((float)i, (float)j, (float)k), f->step);
-                float value = ty_clamp(triangle_value(b, b->nearest[node], p), 0.0f, 1.0f);
-                b->out[node] = (uint8_t)(255.0f * value + 0.5f);
+                float value = triangle_value(b, (uint32_t)b->nearest[node], p);
+                b->out[node] = (uint8_t)(255.0f * ty_clamp(value, 0.0f, 1.0f) + 0.5f);
             }
 }
 
-ty_status host_masks_make(roots_host* host, const ty_roots_host_def* def, const int32_t* nearest, ty_workers* workers,
-                          ty_error* error)
+static const char* const mask_names[ROOTS_MASKS] = {"avoid", "attract"};
+
+static const ty_roots_mask_def* host_mask(const ty_roots_host_def* def, int which)
 {
-    static const char* const keys[ROOTS_MASKS] = {"host.avoid", "host.attract"};
-    const char* const names[ROOTS_MASKS] = {def->avoid, def->attract};
-    const ty_voxels* f = &host->field;
+    return which == ROOTS_AVOID ? &def->avoid : &def->attract;
+}
+
+static const ty_roots_mask_def* part_mask(const ty_roots_host_def* def, int part, int which)
+{
+    const ty_roots_object_def* objects = def->objects.items;
+    return which == ROOTS_AVOID ? &objects[part].avoid : &objects[part].attract;
+}
+
+bool host_is_painted(const ty_roots_host_def* def)
+{
+    bool painted = false;
     for (int i = 0; i < ROOTS_MASKS; i++)
     {
-        if (!names[i] || !names[i][0])
-            continue;
-        baking b = {.host = host, .nearest = nearest};
-        ty_status status = host_channel_find(host->mesh, keys[i], names[i], &b.channel, error);
-        if (status != TY_OK)
-            return status;
-        size_t count = (size_t)f->size[0] * (size_t)f->size[1] * (size_t)f->size[2];
-        b.out = host->masks[i] = TY_TRY_ALLOC(uint8_t, count);
-        if (!b.out)
-            return ty_error_set(error, TY_NO_MEMORY, "no memory for a mask of %zu nodes", count);
-        ty_parallel_all(workers, f->size[2], 2, layers_bake, &b);
+        painted |= is_said(host_mask(def, i));
+        for (int k = 0; k < def->objects.count; k++)
+            painted |= is_said(part_mask(def, k, i));
     }
-    return TY_OK;
+    return painted;
+}
+
+static ty_status sources_open(baking* b, const ty_roots_host_def* def, int which, bool* any, ty_error* error)
+{
+    char key[64];
+    snprintf(key, sizeof key, "host.%s", mask_names[which]);
+    ty_status status = source_open(b->host, key, host_mask(def, which), &b->sources[0], error);
+    *any = is_said(host_mask(def, which));
+    for (int k = 0; k < def->objects.count && status == TY_OK; k++)
+    {
+        const ty_roots_mask_def* own = part_mask(def, k, which);
+        snprintf(key, sizeof key, "host.objects[%d].%s", k, mask_names[which]);
+        b->own[k] = is_said(own);
+        *any |= b->own[k];
+        status = source_open(b->host, key, own, &b->sources[1 + k], error);
+        if (status == TY_OK && !b->own[k] && b->sources[0].texture.values && !b->parts->mapped[k])
+            status = ty_error_set(error, TY_BAD_INPUT, "host.%s.texture: objects[%d] has no texture coordinates (uv)",
+                                  mask_names[which], k);
+    }
+    return status;
+}
+
+static ty_status mask_make(roots_host* host, baking* b, const ty_roots_host_def* def, int which, ty_workers* workers,
+                           ty_error* error)
+{
+    const ty_voxels* f = &host->field;
+    size_t count = (size_t)f->size[0] * (size_t)f->size[1] * (size_t)f->size[2];
+    bool any = false;
+    int room = 1 + b->parts->count;
+    b->sources = TY_ALLOC(source, room);
+    b->own = TY_ALLOC(bool, b->parts->count);
+    ty_status status = sources_open(b, def, which, &any, error);
+    if (status == TY_OK && any)
+    {
+        b->out = host->masks[which] = TY_TRY_ALLOC(uint8_t, count);
+        if (b->out)
+            ty_parallel_all(workers, f->size[2], 2, layers_bake, b);
+        else
+            status = ty_error_set(error, TY_NO_MEMORY, "no memory for a mask of %zu nodes", count);
+    }
+    for (int i = 0; i < room; i++)
+        host_texture_term(&b->sources[i].texture);
+    ty_free(b->sources);
+    ty_free(b->own);
+    return status;
+}
+
+ty_status host_masks_make(roots_host* host, const ty_roots_host_def* def, const host_parts* parts,
+                          const int32_t* nearest, ty_workers* workers, ty_error* error)
+{
+    baking b = {.host = host, .parts = parts, .nearest = nearest};
+    ty_status status = TY_OK;
+    for (int i = 0; i < ROOTS_MASKS && status == TY_OK; i++)
+        status = mask_make(host, &b, def, i, workers, error);
+    return status;
 }
 
 float roots_host_mask(const roots_host* host, roots_mask which, ty_vec3 p, ty_vec3* gradient)
@@ -143,86 +264,4 @@ float roots_host_mask(const roots_host* host, roots_mask which, ty_vec3 p, ty_ve
     if (gradient)
         *gradient = ty_mul(g, 1.0f / f->step);
     return value;
-}
-
-// --- starts ---
-
-// A given place put on the surface, where it is near.
-static ty_status point_place(const roots_host* host, const ty_roots_recipe* recipe, int index, roots_start* out,
-                             ty_error* error)
-{
-    ty_vec3 p = ((const ty_vec3*)recipe->start.points.items)[index];
-    float far = 0.1f * host_longest(host->mesh), deep = ty_max(recipe->radius, 2.0f * host->field.step);
-    float d = roots_host_exact(host, p, far, &out->n);
-    if (!(d <= far))
-        return ty_error_set(error, TY_BAD_INPUT, "start.points[%d]: [%g, %g, %g] is %.3g m from the host; at most %.3g",
-                            index, (double)p.x, (double)p.y, (double)p.z, (double)d, (double)far);
-    if (d < -deep)
-        return ty_error_set(error, TY_BAD_INPUT,
-                            "start.points[%d]: [%g, %g, %g] is inside of the host, %.3g m deep; at most %.3g", index,
-                            (double)p.x, (double)p.y, (double)p.z, (double)-d, (double)deep);
-    out->p = ty_mad(p, out->n, -d);
-    return TY_OK;
-}
-
-// Painted vertices, each time the one that is farthest from all starts so far; the first one is the highest. Their
-// order does not change with how many are asked for.
-static void painted_take(const roots_host* host, const host_channel* channel, int most, roots_start* out, int* count)
-{
-    const ty_mesh* mesh = host->mesh;
-    float* nearest = TY_ALLOC(float, mesh->vertex_count); // squared; -1: not painted
-    for (uint32_t v = 0; v < mesh->vertex_count; v++)
-    {
-        nearest[v] = channel->values[(size_t)v * (size_t)channel->stride] > 0.5f ? TY_FLOAT_MAX : -1.0f;
-        for (int i = 0; i < *count && nearest[v] >= 0.0f; i++)
-            nearest[v] = ty_min(nearest[v], ty_length_sqr(ty_sub(mesh->positions[v], out[i].p)));
-    }
-    while (*count < most)
-    {
-        int64_t best = -1;
-        for (uint32_t v = 0; v < mesh->vertex_count; v++)
-            if (nearest[v] > 0.0f && (best < 0 || nearest[v] > nearest[best] ||
-                                      (nearest[v] == nearest[best] && mesh->positions[v].y > mesh->positions[best].y)))
-                best = v;
-        if (best < 0)
-            break;
-        roots_start* start = &out[(*count)++];
-        start->p = mesh->positions[best];
-        (void)roots_host_exact(host, start->p, 2.0f * host->field.step, &start->n);
-        for (uint32_t v = 0; v < mesh->vertex_count; v++)
-            nearest[v] = ty_min(nearest[v], ty_length_sqr(ty_sub(mesh->positions[v], start->p)));
-    }
-    ty_free(nearest);
-}
-
-ty_status roots_host_starts(const roots_host* host, const ty_roots_recipe* recipe, int most, roots_start** out,
-                            int* count, ty_error* error)
-{
-    const ty_roots_start_def* def = &recipe->start;
-    bool painted = def->attribute && def->attribute[0];
-    int room = def->points.count > most ? def->points.count : most;
-    ty_status status = TY_OK;
-    host_channel channel = {0};
-    *out = NULL;
-    *count = 0;
-    if (def->points.count == 0 && !painted)
-        return TY_OK;
-    if (painted)
-        status = host_channel_find(host->mesh, "start.attribute", def->attribute, &channel, error);
-    roots_start* starts = TY_ALLOC(roots_start, room);
-    for (int i = 0; i < def->points.count && status == TY_OK; i++)
-        status = point_place(host, recipe, (*count)++, &starts[i], error);
-    if (status == TY_OK && painted)
-        painted_take(host, &channel, most, starts, count);
-    if (status == TY_OK && *count == 0)
-        status = ty_error_set(error, TY_BAD_INPUT, "start.attribute: '%.100s' is above 0.5 at no vertex of the host",
-                              def->attribute);
-    if (status == TY_OK)
-        *out = starts;
-    else
-    {
-        *count = 0;
-        ty_free(starts);
-    }
-    return status;
 }

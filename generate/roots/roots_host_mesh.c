@@ -55,16 +55,20 @@ static ty_status attributes_copy(ty_mesh* out, const ty_mesh* part, uint32_t ver
 static ty_status merge(ty_mesh* const* parts, int count, ty_mesh** out, ty_error* error)
 {
     uint64_t vertices = 0, triangles = 0;
+    bool mapped = false;
     for (int i = 0; i < count; i++)
     {
         vertices += parts[i]->vertex_count;
         triangles += parts[i]->triangle_count;
+        mapped |= parts[i]->uvs != NULL;
     }
     if (vertices > INT32_MAX || triangles > INT32_MAX)
         return ty_error_set(error, TY_BAD_INPUT, "host: %llu triangles; at most %d", (unsigned long long)triangles,
                             INT32_MAX);
     ty_mesh* mesh = *out = ty_mesh_create((uint32_t)vertices, (uint32_t)triangles);
-    if (!mesh)
+    if (mesh && mapped)
+        mesh->uvs = TY_TRY_ALLOC(ty_vec2, vertices);
+    if (!mesh || (mapped && !mesh->uvs))
         return ty_error_set(error, TY_NO_MEMORY, "no memory for a host of %llu triangles",
                             (unsigned long long)triangles);
     uint32_t vertex = 0, triangle = 0;
@@ -74,6 +78,8 @@ static ty_status merge(ty_mesh* const* parts, int count, ty_mesh** out, ty_error
         const ty_mesh* part = parts[i];
         memcpy(mesh->positions + vertex, part->positions, part->vertex_count * sizeof(ty_vec3));
         memcpy(mesh->normals + vertex, part->normals, part->vertex_count * sizeof(ty_vec3));
+        if (part->uvs)
+            memcpy(mesh->uvs + vertex, part->uvs, part->vertex_count * sizeof(ty_vec2));
         for (uint32_t t = 0; t < part->triangle_count; t++)
             for (int k = 0; k < 3; k++)
                 mesh->triangles[triangle + t][k] = vertex + part->triangles[t][k];
@@ -100,7 +106,35 @@ static ty_status mesh_finish(const char* where, ty_status status, ty_mesh** mesh
     return status;
 }
 
-ty_status host_objects_make(const char* where, const ty_param_list* objects, ty_mesh** out, ty_error* error)
+static void parts_note(host_parts* out, ty_mesh* const* parts, int count)
+{
+    uint32_t end = 0;
+    *out = (host_parts){count, TY_ALLOC(uint32_t, count), TY_ALLOC(bool, count)};
+    for (int i = 0; i < count; i++)
+    {
+        out->ends[i] = end += parts[i]->triangle_count;
+        out->mapped[i] = parts[i]->uvs != NULL;
+    }
+}
+
+void host_parts_term(host_parts* parts)
+{
+    ty_free(parts->ends);
+    ty_free(parts->mapped);
+    *parts = (host_parts){0};
+}
+
+static ty_status part_check(const char* name, const ty_roots_object_def* def, const ty_mesh* mesh, ty_error* error)
+{
+    char key[64];
+    snprintf(key, sizeof key, "%s.avoid", name);
+    ty_status status = host_mask_check(mesh, key, &def->avoid, error);
+    snprintf(key, sizeof key, "%s.attract", name);
+    return status == TY_OK ? host_mask_check(mesh, key, &def->attract, error) : status;
+}
+
+ty_status host_objects_make(const char* where, const ty_param_list* objects, ty_mesh** out, host_parts* out_parts,
+                            ty_error* error)
 {
     ty_mesh** parts = TY_ALLOC(ty_mesh*, objects->count);
     ty_status status = TY_OK;
@@ -108,21 +142,29 @@ ty_status host_objects_make(const char* where, const ty_param_list* objects, ty_
     for (int i = 0; i < objects->count && status == TY_OK; i++)
     {
         char name[48];
+        const ty_roots_object_def* def = (const ty_roots_object_def*)objects->items + i;
         snprintf(name, sizeof name, "%s[%d]", where, i);
-        status = object_make(name, (const ty_roots_object_def*)objects->items + i, &parts[i], error);
+        status = object_make(name, def, &parts[i], error);
+        if (status == TY_OK)
+            status = part_check(name, def, parts[i], error);
     }
     if (status == TY_OK)
         status = merge(parts, objects->count, out, error);
+    if (status == TY_OK && out_parts)
+        parts_note(out_parts, parts, objects->count);
     for (int i = 0; i < objects->count; i++)
         ty_mesh_destroy(parts[i]);
     ty_free(parts);
     return mesh_finish(where, status, out, error);
 }
 
-ty_status host_mesh_make(const ty_roots_host_def* def, ty_mesh** out, ty_error* error)
+ty_status host_mesh_make(const ty_roots_host_def* def, ty_mesh** out, host_parts* parts, ty_error* error)
 {
     if (def->objects.count > 0)
-        return host_objects_make("host.objects", &def->objects, out, error);
+        return host_objects_make("host.objects", &def->objects, out, parts, error);
     *out = NULL;
-    return mesh_finish("host", shape_make("host", def->kind, def->mesh, &def->shape, out, error), out, error);
+    ty_status status = shape_make("host", def->kind, def->mesh, &def->shape, out, error);
+    if (status == TY_OK)
+        parts_note(parts, out, 1);
+    return mesh_finish("host", status, out, error);
 }

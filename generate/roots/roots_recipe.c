@@ -7,7 +7,12 @@ ty_roots_recipe ty_roots_recipe_default(void)
 {
     ty_roots_recipe recipe = {
         .thesis = {.unit = 0.5f, .fall = 1.0f},
-        .host = {.kind = TY_ROOTS_HOST_SPHERE, .shape = ty_shape_def_default(), .floor = true, .resolution = 256},
+        .host = {.kind = TY_ROOTS_HOST_SPHERE,
+                 .shape = ty_shape_def_default(),
+                 .floor = true,
+                 .resolution = 256,
+                 .avoid = {.channel = "r"},
+                 .attract = {.channel = "r"}},
         .trunk = {0.03f, 0.012f, {0.0f, 0.0f, 0.0f}},
         .count = 11,
         .radius = 4.2e-3f,
@@ -44,7 +49,7 @@ ty_roots_recipe ty_roots_recipe_default(void)
     return recipe;
 }
 
-// --- objects ---
+// --- shapes ---
 
 static const char* const host_kinds[] = {"sphere", "ellipsoid", "box", "cylinder", "stone", "mesh", NULL};
 
@@ -60,19 +65,56 @@ static const char* const host_kinds[] = {"sphere", "ellipsoid", "box", "cylinder
         FIELD("variant", TY_PARAM_INT, "", 0, 1000000, shape.variant, "which stone"),                                  \
         FIELD("divisions", TY_PARAM_INT, "", 8, 4096, shape.divisions, "segments around; roots feel facets")
 
+// --- masks ---
+
+static void set_mask_table(void* def)
+{
+    *(ty_roots_mask_def*)def = (ty_roots_mask_def){.channel = "r"};
+}
+
+#define OWNER ty_roots_mask_def
+static const ty_param mask_rows[] = {
+    FIELD("attribute", TY_PARAM_STRING, "", 0, 0, attribute, "of the vertices, or a channel of it as color.g"),
+    FIELD("texture", TY_PARAM_PATH, "", 0, 0, texture, "in place of it: a picture, looked up at the host's uv"),
+    FIELD("channel", TY_PARAM_STRING, "", 0, 0, channel,
+          "of the texture: r, g, b, a, luminance, or the name of a further channel of the file"),
+};
+TABLE(mask_table, "roots.mask", "What is painted on a host, 0 to 1; brief: an attribute.", mask_rows);
+#undef OWNER
+
+#define MASK(name, member, help)                                                                                       \
+    {                                                                                                                  \
+        name, TY_PARAM_BRIEF_GROUP, "", 0, 0, NULL, &mask_table, offsetof(OWNER, member), help, false                  \
+    }
+
+// --- objects ---
+
+#define OBJECT_ROWS                                                                                                    \
+    SHAPE_ROWS, FIELD("translate", TY_PARAM_FLOAT3, "m", -1e5, 1e5, translate, "where it stands, after turning"),      \
+        FIELD("rotate", TY_PARAM_FLOAT3, "deg", -36000, 36000, rotate, "about x, then y, then z"),                     \
+        FIELD("scale", TY_PARAM_FLOAT3, "", -1e5, 1e5, scale, "before turning; none is 0")
+
 static void set_object_table(void* def)
 {
     *(ty_roots_object_def*)def = (ty_roots_object_def){.shape = ty_shape_def_default(), .scale = {1.0f, 1.0f, 1.0f}};
 }
 
+static void set_part_table(void* def)
+{
+    set_object_table(def);
+    set_mask_table(&((ty_roots_object_def*)def)->avoid);
+    set_mask_table(&((ty_roots_object_def*)def)->attract);
+}
+
 #define OWNER ty_roots_object_def
-static const ty_param object_rows[] = {
-    SHAPE_ROWS,
-    FIELD("translate", TY_PARAM_FLOAT3, "m", -1e5, 1e5, translate, "where it stands, after turning"),
-    FIELD("rotate", TY_PARAM_FLOAT3, "deg", -36000, 36000, rotate, "about x, then y, then z"),
-    FIELD("scale", TY_PARAM_FLOAT3, "", -1e5, 1e5, scale, "before turning; none is 0"),
+static const ty_param object_rows[] = {OBJECT_ROWS};
+TABLE(object_table, "roots.object", "What roots keep clear of.", object_rows);
+static const ty_param part_rows[] = {
+    OBJECT_ROWS,
+    MASK("avoid", avoid, "painted on it alone, in place of what the host says"),
+    MASK("attract", attract, "the same"),
 };
-TABLE(object_table, "roots.object", "Part of a host, or what roots keep clear of.", object_rows);
+TABLE(part_table, "roots.part", "Part of a host.", part_rows);
 #undef OWNER
 
 // --- host ---
@@ -85,13 +127,12 @@ static void set_host_table(void* def)
 #define OWNER ty_roots_host_def
 static const ty_param host_rows[] = {
     SHAPE_ROWS,
-    LIST("objects", &object_table, objects, "several, in place of shape: they may overlap"),
+    LIST("objects", &part_table, objects, "several, in place of shape: they may overlap"),
     FIELD("floor", TY_PARAM_BOOL, "", 0, 0, floor, "it stands on a plane; roots go on over it"),
     FIELD("floor_height", TY_PARAM_FLOAT, "m", -1e4, 1e4, floor_height, "of the plane above the host's lowest point"),
     FIELD("resolution", TY_PARAM_INT, "", 16, 448, resolution, "steps of its field of distance along the longest side"),
-    FIELD("avoid", TY_PARAM_STRING, "", 0, 0, avoid,
-          "attribute of its vertices, or a channel as color.g: roots keep from where it is 1"),
-    FIELD("attract", TY_PARAM_STRING, "", 0, 0, attract, "the same: roots are drawn to where it is 1"),
+    MASK("avoid", avoid, "roots keep from where it is 1"),
+    MASK("attract", attract, "roots are drawn to where it is 1"),
 };
 TABLE(host_table, "roots.host", "What the roots hold on to; it is no part of the result.", host_rows);
 #undef OWNER

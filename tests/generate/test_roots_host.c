@@ -234,7 +234,7 @@ static void masks_are_felt_near_the_host(void** state)
     (void)state;
     write_painted("roots_painted.ply");
     ty_roots_recipe recipe = recipe_of_file("roots_painted.ply");
-    recipe.host.avoid = "seed";
+    recipe.host.avoid.attribute = "seed";
     roots_host host = host_of(&recipe);
     ty_vec3 g, up = {0.0f, 0.042f, 0.0f}, beside = {0.042f, 0.0f, 0.0f}, edge = {0.0357f, 0.0206f, 0.0f};
     assert_float_equal(roots_host_mask(&host, ROOTS_AVOID, up, &g), 1.0f, 0.01f);
@@ -243,18 +243,18 @@ static void masks_are_felt_near_the_host(void** state)
     assert_true(g.y > 50.0f); // up to it
     assert_true(roots_host_mask(&host, ROOTS_ATTRACT, up, &g) == 0.0f && g.y == 0.0f);
     roots_host_term(&host);
-    recipe.host.avoid = "color.r";
+    recipe.host.avoid.attribute = "color.r";
     host = host_of(&recipe);
     assert_float_equal(roots_host_mask(&host, ROOTS_AVOID, beside, NULL), 1.0f, 0.01f);
     roots_host_term(&host);
-    recipe.host.avoid = "moss";
+    recipe.host.avoid.attribute = "moss";
     refused(&recipe, "host.avoid: 'moss'; the host's vertices have ");
     refused(&recipe, "seed");
-    recipe.host.avoid = NULL;
-    recipe.host.attract = "seed.g"; // there is but one number
+    recipe.host.avoid.attribute = NULL;
+    recipe.host.attract.attribute = "seed.g"; // there is but one number
     refused(&recipe, "host.attract: 'seed.g'");
     recipe.host = recipe_of(TY_ROOTS_HOST_BOX).host;
-    recipe.host.attract = "seed";
+    recipe.host.attract.attribute = "seed";
     refused(&recipe, "no attributes");
 }
 

@@ -113,14 +113,14 @@ static void painted_hosts_are_kept(void** state)
     recipe.host.mesh = file;
     assert_same_host(&recipe, test_folder);
     ino_t plain = only_file(path);
-    recipe.host.avoid = "moss";
+    recipe.host.avoid.attribute = "moss";
     assert_same_host(&recipe, test_folder);
     ino_t painted = only_file(path);
     assert_true(painted != plain);
     assert_same_host(&recipe, test_folder);
-    recipe.host.attract = "moss";
+    recipe.host.attract.attribute = "moss";
     assert_same_host(&recipe, test_folder);
-    recipe.host.avoid = recipe.host.attract = NULL;
+    recipe.host.avoid.attribute = recipe.host.attract.attribute = NULL;
     assert_same_host(&recipe, test_folder);
     assert_true(only_file(path) == painted);
     unlink(file);

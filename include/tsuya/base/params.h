@@ -26,7 +26,7 @@ typedef enum ty_param_type
     TY_PARAM_COLOR_INPUT,  // ty_input with three channels
     TY_PARAM_VECTOR_INPUT, // ty_input with three signed numbers of a texture: -1 + 2 * texel unless said
     TY_PARAM_GROUP,        // a nested struct in place, described by group
-    TY_PARAM_BRIEF_GROUP,  // the same; may be written as the input that its first row is
+    TY_PARAM_BRIEF_GROUP,  // the same; may be written as what its first row is, an input or a text
     TY_PARAM_LIST,         // ty_param_list of structs described by group
     TY_PARAM_POINTS,       // ty_param_list of ty_vec3: a list of [x, y, z]
     TY_PARAM_POINTS2,      // ty_param_list of ty_vec2: a list of [x, y]

@@ -15,6 +15,14 @@ typedef enum ty_roots_host_kind
     TY_ROOTS_HOST_MESH, // any mesh with normals, open ones too
 } ty_roots_host_kind;
 
+// What is painted on a host, 0..1: one of the two, or nothing.
+typedef struct ty_roots_mask_def
+{
+    const char* attribute; // of the vertices, or a channel of it as color.g; NULL = none
+    const char* texture;   // path, looked up at the uv; NULL = none
+    const char* channel;   // of the texture: r, g, b, a, luminance, or a further one of the file by its name
+} ty_roots_mask_def;
+
 // Part of a host, or an obstacle. The fields of shape that apply are those of the scene's shape of the same name, with
 // the same defaults.
 typedef struct ty_roots_object_def
@@ -25,19 +33,21 @@ typedef struct ty_roots_object_def
     ty_vec3 translate;  // m
     ty_vec3 rotate;     // rad, about x, then y, then z
     ty_vec3 scale;      // none is 0
+    // Of parts of a host alone, in place of the host's.
+    ty_roots_mask_def avoid, attract;
 } ty_roots_object_def;
 
 typedef struct ty_roots_host_def
 {
-    int kind;              // as of an object, the three
-    const char* mesh;      //
-    ty_shape_def shape;    //
-    ty_param_list objects; // of ty_roots_object_def: these in place of the above
-    bool floor;            // it stands on a plane, over which the roots go on
-    float floor_height;    // m, of the plane above the host's lowest point
-    int resolution;        // steps of the field along the longest side
-    const char* avoid;     // attribute of the meshes' vertices, or NULL: roots keep from where it is 1
-    const char* attract;   // the same: they are drawn to
+    int kind;                  // as of an object, the three
+    const char* mesh;          //
+    ty_shape_def shape;        //
+    ty_param_list objects;     // of ty_roots_object_def: these in place of the above
+    bool floor;                // it stands on a plane, over which the roots go on
+    float floor_height;        // m, of the plane above the host's lowest point
+    int resolution;            // steps of the field along the longest side
+    ty_roots_mask_def avoid;   // roots keep from where it is 1
+    ty_roots_mask_def attract; // they are drawn to
 } ty_roots_host_def;
 
 // Where main roots start, in place of the trunk; on the host.
