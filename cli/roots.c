@@ -158,7 +158,8 @@ static ty_status run(const ty_arguments* arguments)
 }
 
 static const ty_option options[] = {
-    {"output", 'o', "OUT.ply", "the mesh to write: .ply, .obj or .glb; with #### its growth as frames, from 1"},
+    {"output", 'o', "OUT.ply",
+     "the mesh: .ply, .obj or .glb; with `levels` OUT.lod1.ply ... beside it; with #### its growth as frames"},
     {"curves", 0, "FILE.ply", "centre lines as text that can be edited and given back as the recipe's `curves`"},
     {"host", 0, "FILE.ply", "what they hold on to as a mesh, in its place: .ply, .obj or .glb"},
     {"report", 0, "FILE.json", "figures: roots asked for and grown, hold, gaps, corners, bends, coverage, times"},

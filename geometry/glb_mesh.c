@@ -63,6 +63,12 @@ static int find_material(json_t* materials, const char* name)
     return count;
 }
 
+// What the format takes as colours of vertices: linear, of Rec.709.
+static bool is_color(const ty_mesh_attribute* a)
+{
+    return strcmp(a->name, "color") == 0 && a->components >= 3 && a->space == TY_ATTRIBUTE_LINEAR_SRGB;
+}
+
 // What the primitives of a mesh share.
 static json_t* add_vertices(ty_glb_builder* builder, const ty_mesh* mesh)
 {
@@ -79,8 +85,11 @@ static json_t* add_vertices(ty_glb_builder* builder, const ty_mesh* mesh)
     for (int i = 0; i < mesh->attribute_count; i++)
     {
         const ty_mesh_attribute* a = &mesh->attributes[i];
-        ty_glb_set_semantic(attributes, a->name,
-                            ty_glb_add(builder, a->values, n, TY_GLTF_FLOAT, a->components, VERTICES));
+        int values = ty_glb_add(builder, a->values, n, TY_GLTF_FLOAT, a->components, VERTICES);
+        if (is_color(a))
+            json_object_set_new(attributes, "COLOR_0", json_integer(values));
+        else
+            ty_glb_set_semantic(attributes, a->name, values);
     }
     return attributes;
 }

@@ -269,6 +269,18 @@ static ty_status write_growth(void* context, int frame, ty_mesh* mesh, ty_error*
     return ty_mesh_export(path, mesh, error);
 }
 
+// roots.ply, roots.lod1.ply, roots.lod2.ply ...
+static ty_status write_level(void* context, int level, ty_mesh* mesh, ty_error* error)
+{
+    const frame_writer* writer = context;
+    char path[TY_PATH_MAX];
+    const char* extension = ty_path_extension(writer->pattern);
+    int stem = (int)(strlen(writer->pattern) - strlen(extension)) - 1;
+    sign(&mesh->recipe, &mesh->hash, ty_string_copy(writer->text), writer->key);
+    snprintf(path, sizeof path, "%.*s.lod%d.%s", stem, writer->pattern, level, extension);
+    return ty_mesh_export(path, mesh, error);
+}
+
 // What is made of roots besides their mesh.
 static ty_status write_beside(const ty_made* made, const ty_scene_options* options, ty_error* error)
 {
@@ -305,6 +317,8 @@ static ty_status write_made(const ty_recipe* recipe, const making* m, ty_workers
         made.film = (ty_aggregate_sink){write_film, &writer};
     if (recipe->generator->product == TY_PRODUCT_MESH && ty_path_is_sequence(m->output))
         made.growth = (ty_mesh_sink){write_growth, &writer};
+    if (m->options) // in a scene there is but one
+        made.levels = (ty_mesh_sink){write_level, &writer};
     made.wants_report = options->report != NULL;
     made.wants_curves = options->curves != NULL;
     made.wants_host = options->host != NULL;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Inputs at a point: a constant, times a texture or an attribute.
 #include "input_texture.h"
+#include <tsuya/base/rec709.h>
 
 static ty_rgb vertex_value(const ty_mesh_attribute* attribute, const ty_shading_context* context,
                            const ty_surface_point* point)
@@ -45,26 +46,11 @@ static ty_rgb plain_attribute(const ty_input* input, const ty_shading_context* c
     return find_attribute(input, context, point, &value) ? value : ty_rgb_grey(1.0f);
 }
 
-// ACEScg to linear Rec.709 and back, with Bradford's adaptation from D60 to D65.
-static ty_rgb to_rec709(ty_rgb c)
-{
-    return ty_rgb_make(1.70505099f * c.r - 0.62179212f * c.g - 0.08325887f * c.b,
-                       -0.13025642f * c.r + 1.14080474f * c.g - 0.01054832f * c.b,
-                       -0.02400336f * c.r - 0.12896898f * c.g + 1.15297233f * c.b);
-}
-
-static ty_rgb from_rec709(ty_rgb c)
-{
-    return ty_rgb_make(0.61309740f * c.r + 0.33952315f * c.g + 0.04737945f * c.b,
-                       0.07019372f * c.r + 0.91635388f * c.g + 0.01345240f * c.b,
-                       0.02061559f * c.r + 0.10956977f * c.g + 0.86981463f * c.b);
-}
-
 static ty_rgb product(const ty_input* input, ty_rgb a, ty_rgb b)
 {
     if (input->product == TY_PRODUCT_ACESCG)
         return ty_rgb_mul(a, b);
-    return from_rec709(ty_rgb_mul(to_rec709(a), to_rec709(b)));
+    return ty_rgb_from_rec709(ty_rgb_mul(ty_rgb_to_rec709(a), ty_rgb_to_rec709(b)));
 }
 
 ty_rgb ty_input_color(const ty_input* input, const ty_shading_context* context, const ty_surface_point* point)

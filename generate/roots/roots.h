@@ -71,6 +71,12 @@ typedef enum roots_kind
     ROOTS_KINDS,
 } roots_kind;
 
+// 0 = what bears the others, 3 = fine.
+static inline int roots_level(roots_kind kind)
+{
+    return kind == ROOTS_FINE ? 3 : kind == ROOTS_SECOND ? 2 : kind == ROOTS_FIRST ? 1 : 0;
+}
+
 // Of a centre line.
 typedef struct roots_point
 {

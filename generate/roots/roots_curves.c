@@ -8,9 +8,13 @@ static void put_header(const roots_network* net, int edges, ty_sink* out)
     static const char* const numbers[] = {"x", "y", "z", "nx", "ny", "nz", "radius", "flat", "sink", "along", "birth"};
     ty_sink_format(out, "ply\nformat ascii 1.0\ncomment centre lines of roots, tsuya: metres, y up\n");
     ty_sink_format(out, "comment kinds: 0 trunk, 1 main, 2 aerial, 3 first, 4 second, 5 fine\n");
-    ty_sink_format(out, "comment top ");
-    ty_sink_float(out, net->top);
-    ty_sink_format(out, "\nelement vertex %d\n", net->point_count);
+    if (net->top < TY_FLOAT_MAX) // there is a trunk
+    {
+        ty_sink_format(out, "comment top ");
+        ty_sink_float(out, net->top);
+        ty_sink_format(out, "\n");
+    }
+    ty_sink_format(out, "element vertex %d\n", net->point_count);
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         ty_sink_format(out, "property float %s\n", numbers[i]);
     ty_sink_format(out, "property int line\nelement edge %d\nproperty int vertex1\nproperty int vertex2\n", edges);

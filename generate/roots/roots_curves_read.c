@@ -456,6 +456,7 @@ ty_status roots_curves_read(const char* path, roots_network* out, ty_error* erro
     const char* text = (const char*)bytes.data;
     reader r = {.path = path, .line = text, .at = text, .next = text, .end = text + bytes.size, .net = out};
     r.error = error;
+    out->top = TY_FLOAT_MAX; // a file without it has no trunk
     status = header_read(&r);
     if (status == TY_OK)
         status = elements_read(&r);

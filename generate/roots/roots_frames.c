@@ -44,6 +44,11 @@ static void axes_find(void* context, int64_t begin, int64_t end, int worker)
     (void)worker;
     for (int64_t v = begin; v < end; v++)
     {
+        if (d->result->axes)
+        {
+            d->axis[v] = d->result->axes[v];
+            continue;
+        }
         roots_sample sample = roots_skin_at(d->result->skin, still->positions[v]);
         d->axis[v] =
             sample.segment >= 0 ? roots_skin_point(d->result->skin, sample) : (roots_point){.p = still->positions[v]};
@@ -139,14 +144,12 @@ static ty_status frames_remesh(const roots_result* result, const ty_mesh_sink* s
     for (int frame = 1; frame < count && status == TY_OK; frame++)
     {
         roots_network network;
-        roots_skin* skin;
-        ty_mesh* mesh = NULL;
+        roots_shape shape;
         network_at(result->network, (float)frame / (float)count, 0.75f * result->recipe->detail, &network);
-        status = roots_surface(result->recipe, &network, result->host, workers, &skin, &mesh, error);
+        status = roots_shape_make(result->recipe, &network, result->host, workers, &shape, error);
         if (status == TY_OK)
-            status = sink->put(sink->context, frame, mesh, error);
-        roots_skin_destroy(skin);
-        ty_mesh_destroy(mesh);
+            status = sink->put(sink->context, frame, shape.mesh, error);
+        roots_shape_term(&shape);
         roots_network_term(&network);
     }
     return status;

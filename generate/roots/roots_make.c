@@ -68,11 +68,6 @@ static void normals_fill(ty_mesh* mesh)
     ty_free(open);
 }
 
-static int level_of(roots_kind kind)
-{
-    return kind == ROOTS_FINE ? 3 : kind == ROOTS_SECOND ? 2 : kind == ROOTS_FIRST ? 1 : 0;
-}
-
 static void vertices_dress(void* context, int64_t begin, int64_t end, int worker)
 {
     const dressing* d = context;
@@ -87,7 +82,7 @@ static void vertices_dress(void* context, int64_t begin, int64_t end, int worker
         d->mesh->uvs[v] = roots_skin_uv(d->skin, *p, sample);
         d->samples[v] = sample;
         d->radius[v] = own.r;
-        d->level[v] = (float)level_of(d->network->lines[sample.line].kind);
+        d->level[v] = (float)roots_level(d->network->lines[sample.line].kind);
         d->join[v] = sample.join;
         d->sink[v] = own.sink;
         d->root[v] = (float)sample.line;
@@ -235,6 +230,8 @@ static ty_status recipe_check(const ty_roots_recipe* r, ty_error* error)
     if (!(r->tip <= r->radius))
         return ty_error_set(error, TY_BAD_INPUT, "tip: %g mm; it is at most the radius, %g mm", (double)r->tip * 1e3,
                             (double)r->radius * 1e3);
+    if (r->tubes.divisions % 2 != 0)
+        return ty_error_set(error, TY_BAD_INPUT, "tubes.divisions: %d; an even number 4..128", r->tubes.divisions);
     if (!(r->detail <= r->tip))
         return ty_error_set(error, TY_BAD_INPUT, "detail: %g mm; it is at most the tip, %g mm", (double)r->detail * 1e3,
                             (double)r->tip * 1e3);
@@ -271,16 +268,17 @@ ty_status roots_surface(const ty_roots_recipe* recipe, const roots_network* netw
 // From the network on. The mesh is out's.
 static ty_status products_make(roots_result* result, ty_workers* workers, ty_made* out, ty_error* error)
 {
-    roots_skin* skin;
+    roots_shape shape;
     double start = ty_time_now();
-    ty_status status = roots_surface(result->recipe, result->network, result->host, workers, &skin, &out->mesh, error);
+    ty_status status = roots_shape_make(result->recipe, result->network, result->host, workers, &shape, error);
     if (status != TY_OK)
         return status;
     result->surface_seconds = ty_time_now() - start;
-    result->skin = skin;
-    result->mesh = out->mesh;
+    result->skin = shape.skin;
+    result->axes = shape.axes;
+    result->mesh = shape.mesh;
     ty_log(TY_LOG_INFO, "roots: %d roots of %d points grown in %.2f s, %u triangles in %.2f s",
-           result->network->line_count, result->network->point_count, result->grow_seconds, out->mesh->triangle_count,
+           result->network->line_count, result->network->point_count, result->grow_seconds, shape.mesh->triangle_count,
            result->surface_seconds);
     if (out->wants_report)
         out->report = roots_report(result, workers);
@@ -288,13 +286,16 @@ static ty_status products_make(roots_result* result, ty_workers* workers, ty_mad
         out->curves = roots_curves_text(result->network);
     if (out->wants_host)
         out->host = ty_mesh_copy(result->host->mesh);
+    if (out->levels.put && !out->growth.put)
+        status = roots_levels_make(result, &out->levels, workers, error);
     if (out->growth.put)
-    {
         status = roots_growth_frames(result, &out->growth, workers, error);
-        ty_mesh_destroy(out->mesh);
-        out->mesh = NULL;
+    else if (status == TY_OK)
+    {
+        out->mesh = shape.mesh;
+        shape.mesh = NULL;
     }
-    roots_skin_destroy(skin);
+    roots_shape_term(&shape);
     return status;
 }
 
@@ -305,6 +306,8 @@ ty_status ty_roots_make_all(const void* def, ty_workers* workers, ty_made* out, 
     roots_network network = {0};
     roots_result result = {.recipe = recipe, .host = &host, .network = &network};
     ty_status status = recipe_check(recipe, error);
+    if (status == TY_OK && out->growth.put && recipe->levels > 1)
+        status = ty_error_set(error, TY_BAD_INPUT, "levels: %d; frames of growth have one", recipe->levels);
     if (status == TY_OK && recipe->curves)
         status = roots_curves_read(recipe->curves, &network, error);
     double begun = ty_time_now();

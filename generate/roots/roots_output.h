@@ -10,7 +10,8 @@ typedef struct roots_result
     const ty_roots_recipe* recipe;
     const roots_host* host;
     const roots_network* network;
-    const roots_skin* skin;
+    const roots_skin* skin;  // NULL: the mesh is tubes
+    const roots_point* axes; // [vertex_count] where each vertex of tubes belongs; else NULL
     const ty_mesh* mesh;
     double host_seconds, grow_seconds, surface_seconds;
 } roots_result;
@@ -18,6 +19,27 @@ typedef struct roots_result
 // The surface of a network with all that stands at its vertices; *skin is the caller's too, on failure NULL as *out.
 TY_CHECKED ty_status roots_surface(const ty_roots_recipe* recipe, const roots_network* network, const roots_host* host,
                                    ty_workers* workers, roots_skin** skin, ty_mesh** out, ty_error* error);
+
+// Tubes about all lines, with all that stands at their vertices. level: 0 or coarser. axes (NULL: not wanted): as of a
+// result, the caller frees it with ty_free. On failure *out is NULL.
+TY_CHECKED ty_status roots_tubes_make(const ty_roots_recipe* recipe, const roots_network* network, int level,
+                                      ty_mesh** out, roots_point** axes, ty_error* error);
+
+// The mesh of the recipe's kind.
+typedef struct roots_shape
+{
+    ty_mesh* mesh;
+    roots_skin* skin;  // or NULL
+    roots_point* axes; // or NULL
+} roots_shape;
+
+// On failure *out is zeroed.
+TY_CHECKED ty_status roots_shape_make(const ty_roots_recipe* recipe, const roots_network* network,
+                                      const roots_host* host, ty_workers* workers, roots_shape* out, ty_error* error);
+void roots_shape_term(roots_shape* shape);
+// Levels 1 and up of the recipe's kind of mesh, each once, in order.
+TY_CHECKED ty_status roots_levels_make(const roots_result* result, const ty_mesh_sink* sink, ty_workers* workers,
+                                       ty_error* error);
 
 // --- centre lines as a file ---
 

@@ -42,6 +42,8 @@ ty_roots_recipe ty_roots_recipe_default(void)
         .join = 0.8f,
         .bark = 0.08f,
         .detail = 0.6e-3f,
+        .tubes = {.divisions = 16, .color = {0.32f, 0.25f, 0.18f}, .junction = 1.0f},
+        .levels = 1,
         .grow = {.frames = 1},
         .seed = {7},
     };
@@ -261,6 +263,23 @@ static const ty_param thesis_rows[] = {
 TABLE(thesis_table, "roots.thesis", "What only method seed has.", thesis_rows);
 #undef OWNER
 
+// --- tubes ---
+
+static void set_tubes_table(void* def)
+{
+    *(ty_roots_tubes_def*)def = ty_roots_recipe_default().tubes;
+}
+
+#define OWNER ty_roots_tubes_def
+static const ty_param tubes_rows[] = {
+    FIELD("divisions", TY_PARAM_INT, "", 4, 128, divisions, "sides of a section, an even number"),
+    FIELD("color", TY_PARAM_RGB, "", 0, 1, color, "of the vertices"),
+    FIELD("junction", TY_PARAM_FLOAT, "", 0, 4, junction,
+          "how far branches spread along the roots that they meet, 1 as in the thesis; 0 = not at all"),
+};
+TABLE(tubes_table, "roots.tubes", "A tube for each root, not welded, with uv as strips.", tubes_rows);
+#undef OWNER
+
 // --- growth by time ---
 
 static void set_grow_table(void* def)
@@ -280,6 +299,7 @@ TABLE(grow_table, "roots.grow", "The same roots as they come about.", grow_rows)
 // --- the recipe ---
 
 static const char* const methods[] = {"wrap", "seed", NULL};
+static const char* const meshes[] = {"surface", "tubes", NULL};
 
 static void set_recipe_table(void* def)
 {
@@ -288,9 +308,7 @@ static void set_recipe_table(void* def)
 
 #define OWNER ty_roots_recipe
 static const ty_param recipe_rows[] = {
-    {"method", TY_PARAM_ENUM, "", 0, 0, methods, NULL, offsetof(OWNER, method),
-     "wrap: led by the host's field, branches drawn tight; seed: as in the thesis that roots are after, for comparison",
-     false},
+    CHOICE("method", methods, method, "wrap: led by the host's field; seed: as in Homma's thesis of 2011, to compare"),
     GROUP("thesis", &thesis_table, thesis, "what only method seed has"),
     GROUP("host", &host_table, host, "what they hold on to"),
     LIST("obstacles", &object_table, obstacles, "what they keep clear of but do not hold to"),
@@ -312,6 +330,10 @@ static const ty_param recipe_rows[] = {
     FIELD("join", TY_PARAM_FLOAT, "", 0, 2, join, "over which distance roots run together, of the thinner's radius"),
     FIELD("bark", TY_PARAM_FLOAT, "", 0, 0.4, bark, "depth of flutes and swellings, of the radius"),
     FIELD("detail", TY_PARAM_FLOAT, "mm", 0.02, 1e6, detail, "size of the surface's cells, at most the tip"),
+    CHOICE("mesh", meshes, mesh, "surface: one, closed; tubes: one for each root, each closed, for other programs"),
+    GROUP("tubes", &tubes_table, tubes, "with mesh tubes"),
+    FIELD("levels", TY_PARAM_INT, "", 1, 6, levels,
+          "of detail, each of about a quarter of the triangles: besides OUT.ply OUT.lod1.ply, OUT.lod2.ply ..."),
     FIELD("curves", TY_PARAM_PATH, "", 0, 0, curves,
           "centre lines, perhaps edited, in place of those that would grow: what `tsuya roots --curves` wrote"),
     GROUP("grow", &grow_table, grow, "frames of their growth, for an output with ####"),

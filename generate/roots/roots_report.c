@@ -215,7 +215,8 @@ char* roots_report(const roots_result* result, ty_workers* workers)
     ty_sink_format(&out, "},\n \"lines\": %d, \"points\": %d, \"parts\": %d", net->line_count, net->point_count,
                    parts_count(net));
     put_touch(result, workers, &out);
-    ty_sink_format(&out, ", \"coverage\": %.4f", coverage(result));
+    if (result->skin)
+        ty_sink_format(&out, ", \"coverage\": %.4f", coverage(result));
     put_angles(result, &out);
     roots_compare(result, workers, &out);
     ty_sink_format(&out,

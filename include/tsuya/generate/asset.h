@@ -47,6 +47,7 @@ typedef struct ty_made
     ty_frame_sink frames;    // given by the caller
     ty_aggregate_sink film;  // given where the caller wants an aggregate as a film; then there is no aggregate
     ty_mesh_sink growth;     // given where the caller wants a mesh's growth as frames; then there is no mesh
+    ty_mesh_sink levels;     // given where the caller wants a mesh's coarser levels, from 1, beside it
     char* report; // of loops, and of roots where it is wanted: figures, a JSON object as text; the caller frees it with
                   // ty_free; else NULL
     char* curves; // of roots, where they are wanted: their centre lines, an ASCII PLY; the same

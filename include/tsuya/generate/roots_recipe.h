@@ -117,6 +117,19 @@ typedef struct ty_roots_thesis_def
     float fall; // weight of down in a main root's way, 1 as printed
 } ty_roots_thesis_def;
 
+typedef enum ty_roots_mesh
+{
+    TY_ROOTS_SURFACE, // one closed surface
+    TY_ROOTS_TUBES,   // one closed tube for each line, not welded
+} ty_roots_mesh;
+
+typedef struct ty_roots_tubes_def
+{
+    int divisions;  // sides of a section
+    ty_rgb color;   // of the vertices
+    float junction; // how far branches spread where they meet other roots, 1 as in the thesis; 0 = not at all
+} ty_roots_tubes_def;
+
 // The same roots as they come about, as frames.
 typedef struct ty_roots_grow_def
 {
@@ -142,11 +155,14 @@ typedef struct ty_roots_recipe
     ty_roots_link_def first, second; // between main roots, and between first branches
     ty_roots_aerial_def aerial;
     ty_roots_cover_def cover;
-    float exponent;     // of the pipe model: r^n = sum of r_i^n
-    float flare;        // how much thicker branches begin, of their radius
-    float join;         // how far from each other roots begin to run together, of the thinner radius, 0..2
-    float bark;         // depth of the relief, of the radius, 0..0.5
-    float detail;       // m, size of a cell of the surface
+    float exponent; // of the pipe model: r^n = sum of r_i^n
+    float flare;    // how much thicker branches begin, of their radius
+    float join;     // how far from each other roots begin to run together, of the thinner radius, 0..2
+    float bark;     // depth of the relief, of the radius, 0..0.5
+    float detail;   // m, size of a cell of the surface
+    int mesh;       // ty_roots_mesh
+    ty_roots_tubes_def tubes;
+    int levels;         // of detail, the mesh itself among them
     const char* curves; // path of centre lines in place of those that would grow, or NULL
     ty_roots_grow_def grow;
     ty_seed seed;
