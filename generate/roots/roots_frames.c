@@ -107,33 +107,65 @@ static ty_status frames_draw(const roots_result* result, const ty_mesh_sink* sin
 
 // --- a surface for every frame ---
 
+// Numbers of lines and points of the whole network in the part of it that is there; -1: not yet.
+typedef struct numbers
+{
+    int *line, *point;
+} numbers;
+
+// What is joined that is not there yet is not joined yet.
+static void joints_renumber(const numbers* n, roots_network* net)
+{
+    for (int l = 0; l < net->line_count; l++)
+    {
+        roots_line* line = &net->lines[l];
+        int parent = line->parent_point < 0 ? -1 : n->point[line->parent_point];
+        int end = line->end_point < 0 ? -1 : n->point[line->end_point];
+        line->parent = parent < 0 ? -1 : n->line[line->parent];
+        line->parent_point = line->parent < 0 ? -1 : parent;
+        line->end = end < 0 ? -1 : n->line[line->end];
+        line->end_point = line->end < 0 ? -1 : end;
+    }
+}
+
+static int line_at(const roots_network* all, int number, float t, float finest, int* points, roots_network* out)
+{
+    roots_line line = all->lines[number];
+    bool sprout = number == 0;
+    line.first = out->point_count;
+    line.count = 0;
+    for (int i = 0; i < all->lines[number].count; i++)
+    {
+        roots_point p = all->points[all->lines[number].first + i];
+        float grown = roots_growth_at(p.birth, t);
+        if (p.r * grown < finest && !(sprout && i < 2))
+            break;
+        p.p = center_at(&p, grown);
+        p.r = ty_max(p.r * grown, finest);
+        points[all->lines[number].first + i] = out->point_count;
+        roots_network_add_point(out, &p);
+        line.count++;
+    }
+    if (line.count >= 2)
+        return roots_network_add_line(out, &line);
+    points[all->lines[number].first] = -1;
+    out->point_count = line.first;
+    return -1;
+}
+
 // The part of the network that is there at t: points whose section is no finer than the surface's cells, up to the
 // first that is. The sprout is there from the beginning.
 static void network_at(const roots_network* all, float t, float finest, roots_network* out)
 {
+    numbers n = {TY_ALLOC(int, all->line_count + 1), TY_ALLOC(int, all->point_count + 1)};
     *out = (roots_network){.top = all->top};
+    for (int i = 0; i < all->point_count; i++)
+        n.point[i] = -1;
     for (int l = 0; l < all->line_count; l++)
-    {
-        roots_line line = all->lines[l];
-        bool sprout = l == 0;
-        line.first = out->point_count;
-        line.count = 0;
-        for (int i = 0; i < all->lines[l].count; i++)
-        {
-            roots_point p = all->points[all->lines[l].first + i];
-            float grown = roots_growth_at(p.birth, t);
-            if (p.r * grown < finest && !(sprout && i < 2))
-                break;
-            p.p = center_at(&p, grown);
-            p.r = ty_max(p.r * grown, finest);
-            roots_network_add_point(out, &p);
-            line.count++;
-        }
-        if (line.count < 2)
-            out->point_count = line.first;
-        else
-            roots_network_add_line(out, &line);
-    }
+        n.line[l] = line_at(all, l, t, finest, n.point, out);
+    joints_renumber(&n, out);
+    ty_free(n.line);
+    ty_free(n.point);
 }
 
 static ty_status frames_remesh(const roots_result* result, const ty_mesh_sink* sink, ty_workers* workers,

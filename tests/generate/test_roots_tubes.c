@@ -197,6 +197,17 @@ static ty_status frame_put(void* context, int frame, ty_mesh* mesh, ty_error* er
     return TY_OK;
 }
 
+static ty_status frame_check(void* context, int frame, ty_mesh* mesh, ty_error* error)
+{
+    frames* f = context;
+    ty_mesh_topology topology;
+    (void)error;
+    assert_int_equal(frame, ++f->count);
+    ty_mesh_analyse(mesh, &topology);
+    assert_int_equal(topology.boundary_edges + topology.nonmanifold_edges + topology.misoriented_edges, 0);
+    return TY_OK;
+}
+
 static void tubes_grow_and_come_from_files(void** state)
 {
     (void)state;
@@ -221,6 +232,13 @@ static void tubes_grow_and_come_from_files(void** state)
         assert_int_equal(f.count, 5);
         assert_int_equal(f.last->vertex_count, still->vertex_count);
         assert_memory_equal(f.last->positions, still->positions, still->vertex_count * sizeof(ty_vec3));
+        f.count = 0;
+        recipe.grow.remesh = true; // tubes of what is there
+        ty_free(f.radius);
+        f.radius = NULL;
+        made = (ty_made){.growth = {frame_check, &f}};
+        assert_int_equal(ty_roots_make_all(&recipe, NULL, &made, &error), TY_OK);
+        assert_int_equal(f.count, 5);
         recipe.levels = 2;
         assert_int_equal(ty_roots_make_all(&recipe, NULL, &made, &error), TY_BAD_INPUT);
         assert_non_null(strstr(error.text, "levels: 2"));
