@@ -104,6 +104,10 @@ json_t* ty_json_format(const char* format, ...) TY_PRINTF(1, 2);
 TY_CHECKED ty_status ty_json_print(json_t* value);
 // Writes it to a file, atomically, and releases it.
 TY_CHECKED ty_status ty_json_write(const char* path, json_t* value);
+// What was made as figures, the text of a JSON object: to the file of --report, and to standard output, as JSON with
+// --json, else the name of the output and what print makes of them.
+TY_CHECKED ty_status ty_report_give(const ty_arguments* arguments, const char* output, const char* text,
+                                    void (*print)(const json_t* report));
 // info_metrics.c: the metrics of an aggregate as lines of words with units; those without words keep their names.
 void ty_info_print_metrics(const json_t* values, int indent);
 // Whether the path ends in one of the endings (up to NULL); else a usage mistake that lists them.
@@ -119,6 +123,9 @@ typedef enum ty_output_form
 // it is called in messages: "output", "state". path NULL: the command's first option is missing. Logged.
 TY_CHECKED ty_status ty_output_check(const ty_command* command, const char* what, const char* path,
                                      const char* const* endings, ty_output_form form);
+// Whether they are files of their own; NULL among the paths: not given. names: as what of ty_output_check. Logged.
+TY_CHECKED ty_status ty_output_check_apart(const ty_command* command, const char* const* names,
+                                           const char* const* paths, int count);
 // Whether a file can be written at path; leaves nothing there.
 TY_CHECKED ty_status ty_output_probe(const char* path, ty_error* error);
 // A file that is complete or absent, written as a stream. A failure of put, or of the disk, leaves the old one.

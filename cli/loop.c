@@ -41,29 +41,6 @@ static void report_print(const json_t* report)
            number(report, "step_most"), number(report, "wavelength"), (int)number(report, "frames_needed"));
 }
 
-static ty_status report_give(const ty_arguments* arguments, const char* output, const char* text)
-{
-    const char* file = ty_argument_text(arguments, "report", NULL);
-    json_t* report = json_loads(text, 0, NULL);
-    if (!report)
-    {
-        ty_log(TY_LOG_ERROR, "the report is no JSON");
-        return TY_INTERNAL;
-    }
-    json_object_set_new(report, "output", ty_json_from_text(output));
-    ty_status status = file ? ty_json_write(file, json_incref(report)) : TY_OK;
-    if (status == TY_OK && ty_argument_has(arguments, "json"))
-        return ty_json_print(report);
-    if (status == TY_OK)
-    {
-        printf("%s\n", output);
-        report_print(report);
-        status = ty_output_finish();
-    }
-    json_decref(report);
-    return status;
-}
-
 // --- the making ---
 
 static ty_status check_output(const ty_arguments* arguments, const char* output)
@@ -93,7 +70,7 @@ static ty_status run(const ty_arguments* arguments)
     if (status == TY_OK)
     {
         ty_log(TY_LOG_INFO, "made in %.1f s", ty_time_now() - start);
-        status = report_give(arguments, output, report);
+        status = ty_report_give(arguments, output, report, report_print);
     }
     ty_free(report);
     return status;

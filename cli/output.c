@@ -2,6 +2,7 @@
 // Results: JSON and text on standard output, checked to have arrived, and files.
 #include "cli.h"
 #include <errno.h>
+#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -66,6 +67,28 @@ ty_status ty_output_check(const ty_command* command, const char* what, const cha
     if (status != TY_OK)
         ty_log_error(&error);
     return status;
+}
+
+// The place that a path names, links followed where it is there: of what is not, its folder's.
+static bool place_of(const char* path, char out[PATH_MAX])
+{
+    char folder[TY_PATH_MAX], whole[PATH_MAX];
+    if (realpath(path, out))
+        return true;
+    ty_path_folder(path, folder);
+    const char* name = strrchr(path, '/');
+    return realpath(folder, whole) && snprintf(out, PATH_MAX, "%s/%s", whole, name ? name + 1 : path) < PATH_MAX;
+}
+
+ty_status ty_output_check_apart(const ty_command* command, const char* const* names, const char* const* paths,
+                                int count)
+{
+    char a[PATH_MAX], b[PATH_MAX];
+    for (int i = 1; i < count; i++)
+        for (int k = 0; k < i; k++)
+            if (paths[i] && paths[k] && place_of(paths[i], a) && place_of(paths[k], b) && strcmp(a, b) == 0)
+                return ty_usage(command, "the %s and the %s are one file: '%s'", names[k], names[i], paths[i]);
+    return TY_OK;
 }
 
 ty_status ty_output_write(const char* path, ty_output_fn* put, const void* context, ty_error* error)
@@ -177,5 +200,29 @@ ty_status ty_json_write(const char* path, json_t* value)
     {
         ty_log_error(&error);
     }
+    return status;
+}
+
+ty_status ty_report_give(const ty_arguments* arguments, const char* output, const char* text,
+                         void (*print)(const json_t* report))
+{
+    const char* file = ty_argument_text(arguments, "report", NULL);
+    json_t* report = json_loads(text, 0, NULL);
+    if (!report)
+    {
+        ty_log(TY_LOG_ERROR, "the report is no JSON");
+        return TY_INTERNAL;
+    }
+    json_object_set_new(report, "output", ty_json_from_text(output));
+    ty_status status = file ? ty_json_write(file, json_incref(report)) : TY_OK;
+    if (status == TY_OK && ty_argument_has(arguments, "json"))
+        return ty_json_print(report);
+    if (status == TY_OK)
+    {
+        printf("%s\n", output);
+        print(report);
+        status = ty_output_finish();
+    }
+    json_decref(report);
     return status;
 }

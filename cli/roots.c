@@ -11,21 +11,19 @@ static const char *const mesh_endings[] = {"ply", "obj", "glb", NULL}, *const cu
 
 static ty_status check_outputs(const ty_arguments* arguments)
 {
-    static const struct
+    static const char* const names[] = {"output", "curves", "host", "report", "preview"};
+    static const char* const* const endings[] = {mesh_endings, curve_endings, mesh_endings, report_endings,
+                                                 picture_endings};
+    const char* paths[TY_PARAM_COUNT(names)];
+    ty_status status = TY_OK;
+    for (int i = 0; i < TY_PARAM_COUNT(names) && status == TY_OK; i++)
     {
-        const char* option;
-        const char* const* endings;
-    } beside[] = {
-        {"curves", curve_endings}, {"host", mesh_endings}, {"report", report_endings}, {"preview", picture_endings}};
-    ty_status status = ty_output_check(arguments->command, "output", ty_argument_text(arguments, "output", NULL),
-                                       mesh_endings, TY_OUTPUT_EITHER);
-    for (int i = 0; i < TY_PARAM_COUNT(beside) && status == TY_OK; i++)
-    {
-        const char* path = ty_argument_text(arguments, beside[i].option, NULL);
-        if (path)
-            status = ty_output_check(arguments->command, beside[i].option, path, beside[i].endings, TY_OUTPUT_FILE);
+        paths[i] = ty_argument_text(arguments, names[i], NULL);
+        if (i == 0 || paths[i])
+            status = ty_output_check(arguments->command, names[i], paths[i], endings[i],
+                                     i == 0 ? TY_OUTPUT_EITHER : TY_OUTPUT_FILE);
     }
-    return status;
+    return status == TY_OK ? ty_output_check_apart(arguments->command, names, paths, TY_PARAM_COUNT(names)) : status;
 }
 
 // --- the report ---
@@ -35,7 +33,7 @@ static double number(const json_t* report, const char* key)
     return json_number_value(json_object_get(report, key));
 }
 
-static void report_print(const json_t* report)
+static void figures_print(const json_t* report)
 {
     const char* kind;
     json_t* counts;
@@ -73,68 +71,75 @@ static void methods_print(const json_t* report)
     }
 }
 
-static ty_status report_give(const ty_arguments* arguments, const char* output, const char* text)
+static void report_print(const json_t* report)
 {
-    const char* file = ty_argument_text(arguments, "report", NULL);
-    json_t* report = json_loads(text, 0, NULL);
-    if (!report)
-    {
-        ty_log(TY_LOG_ERROR, "the report is no JSON");
-        return TY_INTERNAL;
-    }
-    json_object_set_new(report, "output", ty_json_from_text(output));
-    ty_status status = file ? ty_json_write(file, json_incref(report)) : TY_OK;
-    if (status == TY_OK && ty_argument_has(arguments, "json"))
-        return ty_json_print(report);
-    if (status == TY_OK)
-    {
-        printf("%s\n", output);
-        report_print(report);
-        methods_print(report);
-        status = ty_output_finish();
-    }
-    json_decref(report);
-    return status;
+    figures_print(report);
+    methods_print(report);
 }
 
 // --- the making ---
 
-// A picture needs the host, too: of its own where none is asked for.
-static void host_place(const ty_arguments* arguments, char path[TY_PATH_MAX])
+// Mesh and what is beside it. The figures are the caller's.
+static ty_status make(const ty_arguments* arguments, const ty_scene_options* options)
 {
-    const char* host = ty_argument_text(arguments, "host", NULL);
-    const char* preview = ty_argument_text(arguments, "preview", NULL);
-    path[0] = '\0';
-    if (host)
-        snprintf(path, TY_PATH_MAX, "%s", host);
-    else if (preview)
-        snprintf(path, TY_PATH_MAX, "%.4000s.host.ply", preview);
-}
-
-static ty_status make(const ty_arguments* arguments, ty_scene_arguments* scene_arguments)
-{
-    static char host[TY_PATH_MAX];
-    const char* output = ty_argument_text(arguments, "output", NULL);
-    const char* preview = ty_argument_text(arguments, "preview", NULL);
-    ty_scene_options* options = &scene_arguments->options;
-    char* report = NULL;
-    bool wants_report = ty_argument_has(arguments, "report") || ty_argument_has(arguments, "json");
-    host_place(arguments, host);
-    options->report = wants_report ? &report : NULL;
-    options->curves = ty_argument_text(arguments, "curves", NULL);
-    options->host = host[0] ? host : NULL;
     ty_error_list errors = {0};
     double start = ty_time_now();
-    ty_status status = ty_recipe_make(arguments->positional[0], "roots", output, 0, options, &errors);
+    ty_status status = ty_recipe_make(arguments->positional[0], "roots", ty_argument_text(arguments, "output", NULL), 0,
+                                      options, &errors);
     ty_errors_log(&errors);
     if (status == TY_OK)
         ty_log(TY_LOG_INFO, "made in %.1f s", ty_time_now() - start);
+    return status;
+}
+
+// The picture needs the host, too: where none is asked for, in a file that goes again.
+static ty_status make_with_picture(const ty_arguments* arguments, ty_scene_options* options)
+{
+    static ty_atomic_file passing; // paths: too large for the stack
+    char name[TY_PATH_MAX];
+    ty_error error;
+    const char *output = ty_argument_text(arguments, "output", NULL),
+               *preview = ty_argument_text(arguments, "preview", NULL);
+    bool passes = preview && !options->host;
+    ty_status status = TY_OK;
+    if (passes)
+    {
+        snprintf(name, sizeof name, "%.4000s.ply", preview);
+        status = ty_atomic_begin(&passing, name, &error);
+        if (status != TY_OK)
+        {
+            ty_log_error(&error);
+            return status;
+        }
+        options->host = passing.temporary;
+    }
+    status = make(arguments, options);
     if (status == TY_OK && preview)
-        status = ty_roots_picture(preview, output, host, options);
-    if (preview && !ty_argument_has(arguments, "host"))
-        remove(host);
+        status = ty_roots_picture(preview, output, options->host, options);
+    if (passes)
+        ty_atomic_abort(&passing);
+    return status;
+}
+
+static ty_status run(const ty_arguments* arguments)
+{
+    static ty_scene_arguments scene_arguments;
+    ty_scene_options* options = &scene_arguments.options;
+    const char* output = ty_argument_text(arguments, "output", NULL);
+    char* report = NULL;
+    ty_status status = check_outputs(arguments);
+    if (status == TY_OK)
+        status = ty_scene_arguments_read(arguments, &scene_arguments);
+    if (status != TY_OK)
+        return status;
+    if (ty_argument_has(arguments, "report") || ty_argument_has(arguments, "json"))
+        options->report = &report;
+    options->curves = ty_argument_text(arguments, "curves", NULL);
+    options->host = ty_argument_text(arguments, "host", NULL);
+    status = make_with_picture(arguments, options);
+    ty_scene_arguments_term(&scene_arguments);
     if (status == TY_OK && report)
-        status = report_give(arguments, output, report);
+        status = ty_report_give(arguments, output, report, report_print);
     else if (status == TY_OK)
     {
         printf("%s\n", output);
@@ -144,26 +149,13 @@ static ty_status make(const ty_arguments* arguments, ty_scene_arguments* scene_a
     return status;
 }
 
-static ty_status run(const ty_arguments* arguments)
-{
-    static ty_scene_arguments scene_arguments;
-    ty_status status = check_outputs(arguments);
-    if (status == TY_OK)
-        status = ty_scene_arguments_read(arguments, &scene_arguments);
-    if (status != TY_OK)
-        return status;
-    status = make(arguments, &scene_arguments);
-    ty_scene_arguments_term(&scene_arguments);
-    return status;
-}
-
 static const ty_option options[] = {
     {"output", 'o', "OUT.ply",
      "the mesh: .ply, .obj or .glb; with `levels` OUT.lod1.ply ... beside it; with #### its growth as frames"},
     {"curves", 0, "FILE.ply", "centre lines as text that can be edited and given back as the recipe's `curves`"},
     {"host", 0, "FILE.ply", "what they hold on to as a mesh, in its place: .ply, .obj or .glb"},
     {"report", 0, "FILE.json", "figures: roots asked for and grown, hold, gaps, corners, bends, coverage, times"},
-    {"json", 0, NULL, "print them instead of a summary"},
+    {"json", 0, NULL, "print them, in place of the name of the mesh"},
     {"preview", 0, "FILE.png", "a small picture of the roots on their host"},
     TY_SCENE_OPTIONS,
 };

@@ -346,7 +346,7 @@ static ty_status write_made(const ty_recipe* recipe, const making* m, ty_workers
     ty_mesh_destroy(made.host);
     ty_free(made.curves);
     ty_free(text);
-    if (status == TY_BAD_INPUT)
+    if (status == TY_BAD_INPUT || status == TY_BAD_FILE) // where the recipe names the file, if the error does not
         ty_error_find_place(error, recipe->node);
     if (written == TY_OK)
         return status;

@@ -18,6 +18,12 @@ float host_longest(const ty_mesh* mesh)
     return ty_max(size.x, ty_max(size.y, size.z));
 }
 
+float host_reach(const ty_mesh* mesh)
+{
+    ty_vec3 low = mesh->bounds.low, high = mesh->bounds.high;
+    return ty_max(ty_max(-low.x, high.x), ty_max(ty_max(-low.y, high.y), ty_max(-low.z, high.z)));
+}
+
 // A root as thick as its host has nothing to hold on to.
 static ty_status radius_check(const ty_roots_recipe* recipe, const ty_mesh* mesh, ty_error* error)
 {
@@ -26,6 +32,17 @@ static ty_status radius_check(const ty_roots_recipe* recipe, const ty_mesh* mesh
         return TY_OK;
     return ty_error_set(error, TY_BAD_INPUT, "radius: %g mm; at most %g mm, the host's longest side",
                         (double)recipe->radius * 1e3, (double)most * 1e3);
+}
+
+// Cells have to be larger than what numbers tell apart where the host stands: four of their steps.
+static ty_status detail_check(const ty_roots_recipe* recipe, const ty_mesh* mesh, ty_error* error)
+{
+    float reach = host_reach(mesh), least = 0x1p-21f * reach;
+    if (recipe->detail >= least)
+        return TY_OK;
+    return ty_error_set(error, TY_BAD_INPUT,
+                        "detail: %g mm; at least %.3g mm where the host reaches %g m from the origin",
+                        (double)recipe->detail * 1e3, (double)least * 1e3, (double)reach);
 }
 
 static ty_status obstacles_make(const ty_roots_recipe* recipe, const char* cache, ty_workers* workers, roots_host* out,
@@ -48,19 +65,24 @@ ty_status roots_host_init(const ty_roots_recipe* recipe, const char* cache, ty_w
     const ty_roots_host_def* def = &recipe->host;
     int32_t* nearest = NULL;
     host_parts parts = {0};
-    bool painted = host_is_painted(def);
+    host_sources* painted = NULL;
     double start = ty_time_now();
     *out = (roots_host){.has_floor = def->floor};
     ty_status status = host_mesh_make(def, &out->mesh, &parts, error);
     if (status == TY_OK)
         status = radius_check(recipe, out->mesh, error);
     if (status == TY_OK)
+        status = detail_check(recipe, out->mesh, error);
+    if (status == TY_OK)
+        status = host_sources_open(out->mesh, def, &parts, &painted, error);
+    if (status == TY_OK)
         status = world_make(out, error);
     if (status == TY_OK)
         status =
             host_field_make(out->mesh, def->resolution, cache, workers, &out->field, painted ? &nearest : NULL, error);
-    if (status == TY_OK)
-        status = host_masks_make(out, def, &parts, nearest, workers, error);
+    if (status == TY_OK && painted)
+        status = host_masks_make(out, painted, nearest, workers, error);
+    host_sources_close(painted);
     ty_free(nearest);
     host_parts_term(&parts);
     if (status == TY_OK)

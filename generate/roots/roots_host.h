@@ -21,6 +21,8 @@ void host_parts_term(host_parts* parts);
 
 // The longest side of its bounds, m.
 float host_longest(const ty_mesh* mesh);
+// The largest coordinate of its bounds, m.
+float host_reach(const ty_mesh* mesh);
 // The field of the mesh with so many steps along its longest side, from the folder where it was kept, or made and kept
 // there; NULL: neither. nearest as of ty_voxels_around_mesh. The same bits either way.
 TY_CHECKED ty_status host_field_make(const ty_mesh* mesh, int resolution, const char* cache, ty_workers* workers,
@@ -39,14 +41,17 @@ TY_CHECKED ty_status host_channel_find(const ty_mesh* mesh, const char* key, con
                                        ty_error* error);
 // Trilinear, with its gradient; beyond the grid the way to it is added.
 float host_field_value(const ty_voxels* field, ty_vec3 p, ty_vec3* gradient);
-// Whether anything is painted, on the whole or on a part.
-bool host_is_painted(const ty_roots_host_def* def);
 // Whether the mesh can have such a mask; key: the recipe's, for messages.
 TY_CHECKED ty_status host_mask_check(const ty_mesh* mesh, const char* key, const ty_roots_mask_def* def,
                                      ty_error* error);
+// What masks come from: attributes found, textures read. Borrows all but def; *out is NULL where nothing is painted.
+typedef struct host_sources host_sources;
+TY_CHECKED ty_status host_sources_open(const ty_mesh* mesh, const ty_roots_host_def* def, const host_parts* parts,
+                                       host_sources** out, ty_error* error);
+void host_sources_close(host_sources* sources); // NULL is allowed
 // Masks of the host from the triangle that is nearest to each node.
-TY_CHECKED ty_status host_masks_make(roots_host* host, const ty_roots_host_def* def, const host_parts* parts,
-                                     const int32_t* nearest, ty_workers* workers, ty_error* error);
+TY_CHECKED ty_status host_masks_make(roots_host* host, const host_sources* from, const int32_t* nearest,
+                                     ty_workers* workers, ty_error* error);
 
 // One channel of a picture.
 typedef struct host_texture

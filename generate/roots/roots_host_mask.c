@@ -61,6 +61,8 @@ static bool is_said(const ty_roots_mask_def* def)
 ty_status host_mask_check(const ty_mesh* mesh, const char* key, const ty_roots_mask_def* def, ty_error* error)
 {
     host_channel channel;
+    if (!is_said(def) && def->channel && strcmp(def->channel, "r") != 0)
+        return ty_error_set(error, TY_BAD_INPUT, "%s.channel: %.100s; of which texture?", key, def->channel);
     if (!is_said(def))
         return TY_OK;
     if (def->attribute && def->attribute[0] && def->texture && def->texture[0])
@@ -73,48 +75,115 @@ ty_status host_mask_check(const ty_mesh* mesh, const char* key, const ty_roots_m
 }
 
 // On failure the caller frees what out holds all the same.
-static ty_status source_open(const roots_host* host, const char* key, const ty_roots_mask_def* def, source* out,
+static ty_status source_open(const ty_mesh* mesh, const char* key, const ty_roots_mask_def* def, source* out,
                              ty_error* error)
 {
-    ty_status status = host_mask_check(host->mesh, key, def, error);
+    ty_status status = host_mask_check(mesh, key, def, error);
     if (status != TY_OK || !is_said(def))
         return status;
     if (def->texture && def->texture[0])
         return host_texture_read(key, def, &out->texture, error);
-    return host_channel_find(host->mesh, key, def->attribute, &out->channel, error);
+    return host_channel_find(mesh, key, def->attribute, &out->channel, error);
+}
+
+struct host_sources
+{
+    const ty_mesh* mesh;
+    const host_parts* parts;
+    source* items[ROOTS_MASKS]; // one for all parts, then one of each of them
+    bool* own[ROOTS_MASKS];     // of each part: it has one
+    bool any[ROOTS_MASKS];
+};
+
+static ty_status mask_open(host_sources* s, const ty_roots_host_def* def, int which, ty_error* error)
+{
+    static const char* const names[ROOTS_MASKS] = {"avoid", "attract"};
+    const ty_roots_mask_def* whole = which == ROOTS_AVOID ? &def->avoid : &def->attract;
+    const ty_roots_object_def* objects = def->objects.items;
+    char key[64];
+    snprintf(key, sizeof key, "host.%s", names[which]);
+    s->items[which] = TY_ALLOC(source, 1 + s->parts->count);
+    s->own[which] = TY_ALLOC(bool, s->parts->count);
+    s->any[which] = is_said(whole);
+    ty_status status = source_open(s->mesh, key, whole, &s->items[which][0], error);
+    for (int k = 0; k < def->objects.count && status == TY_OK; k++)
+    {
+        const ty_roots_mask_def* own = which == ROOTS_AVOID ? &objects[k].avoid : &objects[k].attract;
+        snprintf(key, sizeof key, "host.objects[%d].%s", k, names[which]);
+        s->own[which][k] = is_said(own);
+        s->any[which] |= s->own[which][k];
+        status = source_open(s->mesh, key, own, &s->items[which][1 + k], error);
+        if (status == TY_OK && !s->own[which][k] && s->items[which][0].texture.values && !s->parts->mapped[k])
+            status = ty_error_set(error, TY_BAD_INPUT, "host.%s.texture: objects[%d] has no texture coordinates (uv)",
+                                  names[which], k);
+    }
+    return status;
+}
+
+ty_status host_sources_open(const ty_mesh* mesh, const ty_roots_host_def* def, const host_parts* parts,
+                            host_sources** out, ty_error* error)
+{
+    host_sources* s = *out = TY_ALLOC(host_sources, 1);
+    *s = (host_sources){.mesh = mesh, .parts = parts};
+    ty_status status = TY_OK;
+    bool any = false;
+    for (int i = 0; i < ROOTS_MASKS && status == TY_OK; i++)
+    {
+        status = mask_open(s, def, i, error);
+        any |= s->any[i];
+    }
+    if (status == TY_OK && any)
+        return TY_OK;
+    host_sources_close(s);
+    *out = NULL;
+    return status;
+}
+
+void host_sources_close(host_sources* s)
+{
+    if (!s)
+        return;
+    for (int i = 0; i < ROOTS_MASKS; i++)
+    {
+        for (int k = 0; k < 1 + s->parts->count && s->items[i]; k++)
+            host_texture_term(&s->items[i][k].texture);
+        ty_free(s->items[i]);
+        ty_free(s->own[i]);
+    }
+    ty_free(s);
 }
 
 // --- masks ---
 
 typedef struct baking
 {
-    const roots_host* host;
-    const host_parts* parts;
+    const ty_voxels* field;
+    const host_sources* from;
     const int32_t* nearest;
-    source* sources; // one for all parts, then one of each of them
-    bool* own;       // of each part: it has one
+    int which;
     uint8_t* out;
 } baking;
 
 static const source* source_of(const baking* b, uint32_t triangle)
 {
-    int low = 0, high = b->parts->count - 1;
+    const host_parts* parts = b->from->parts;
+    int low = 0, high = parts->count - 1;
     while (low < high)
     {
         int middle = (low + high) / 2;
-        if (triangle < b->parts->ends[middle])
+        if (triangle < parts->ends[middle])
             high = middle;
         else
             low = middle + 1;
     }
-    return &b->sources[b->own[low] ? 1 + low : 0];
+    return &b->from->items[b->which][b->from->own[b->which][low] ? 1 + low : 0];
 }
 
 // The closest point is found by areas of the foot of p in the plane of the triangle, held within it: masks need no
 // more.
 static float triangle_value(const baking* b, uint32_t triangle, ty_vec3 p)
 {
-    const ty_mesh* mesh = b->host->mesh;
+    const ty_mesh* mesh = b->from->mesh;
     const source* from = source_of(b, triangle);
     const uint32_t* c = mesh->triangles[triangle];
     const ty_vec3* at = mesh->positions;
@@ -139,7 +208,7 @@ static float triangle_value(const baking* b, uint32_t triangle, ty_vec3 p)
 static void layers_bake(void* context, int64_t begin, int64_t end, int worker)
 {
     const baking* b = context;
-    const ty_voxels* f = &b->host->field;
+    const ty_voxels* f = b->field;
     (void)worker;
     for (int k = (int)begin; k < (int)end; k++)
         for (int j = 0; j < f->size[1]; j++)
@@ -154,84 +223,22 @@ static void layers_bake(void* context, int64_t begin, int64_t end, int worker)
             }
 }
 
-static const char* const mask_names[ROOTS_MASKS] = {"avoid", "attract"};
-
-static const ty_roots_mask_def* host_mask(const ty_roots_host_def* def, int which)
-{
-    return which == ROOTS_AVOID ? &def->avoid : &def->attract;
-}
-
-static const ty_roots_mask_def* part_mask(const ty_roots_host_def* def, int part, int which)
-{
-    const ty_roots_object_def* objects = def->objects.items;
-    return which == ROOTS_AVOID ? &objects[part].avoid : &objects[part].attract;
-}
-
-bool host_is_painted(const ty_roots_host_def* def)
-{
-    bool painted = false;
-    for (int i = 0; i < ROOTS_MASKS; i++)
-    {
-        painted |= is_said(host_mask(def, i));
-        for (int k = 0; k < def->objects.count; k++)
-            painted |= is_said(part_mask(def, k, i));
-    }
-    return painted;
-}
-
-static ty_status sources_open(baking* b, const ty_roots_host_def* def, int which, bool* any, ty_error* error)
-{
-    char key[64];
-    snprintf(key, sizeof key, "host.%s", mask_names[which]);
-    ty_status status = source_open(b->host, key, host_mask(def, which), &b->sources[0], error);
-    *any = is_said(host_mask(def, which));
-    for (int k = 0; k < def->objects.count && status == TY_OK; k++)
-    {
-        const ty_roots_mask_def* own = part_mask(def, k, which);
-        snprintf(key, sizeof key, "host.objects[%d].%s", k, mask_names[which]);
-        b->own[k] = is_said(own);
-        *any |= b->own[k];
-        status = source_open(b->host, key, own, &b->sources[1 + k], error);
-        if (status == TY_OK && !b->own[k] && b->sources[0].texture.values && !b->parts->mapped[k])
-            status = ty_error_set(error, TY_BAD_INPUT, "host.%s.texture: objects[%d] has no texture coordinates (uv)",
-                                  mask_names[which], k);
-    }
-    return status;
-}
-
-static ty_status mask_make(roots_host* host, baking* b, const ty_roots_host_def* def, int which, ty_workers* workers,
-                           ty_error* error)
+ty_status host_masks_make(roots_host* host, const host_sources* from, const int32_t* nearest, ty_workers* workers,
+                          ty_error* error)
 {
     const ty_voxels* f = &host->field;
     size_t count = (size_t)f->size[0] * (size_t)f->size[1] * (size_t)f->size[2];
-    bool any = false;
-    int room = 1 + b->parts->count;
-    b->sources = TY_ALLOC(source, room);
-    b->own = TY_ALLOC(bool, b->parts->count);
-    ty_status status = sources_open(b, def, which, &any, error);
-    if (status == TY_OK && any)
+    for (int i = 0; i < ROOTS_MASKS; i++)
     {
-        b->out = host->masks[which] = TY_TRY_ALLOC(uint8_t, count);
-        if (b->out)
-            ty_parallel_all(workers, f->size[2], 2, layers_bake, b);
-        else
-            status = ty_error_set(error, TY_NO_MEMORY, "no memory for a mask of %zu nodes", count);
+        if (!from->any[i])
+            continue;
+        host->masks[i] = TY_TRY_ALLOC(uint8_t, count);
+        if (!host->masks[i])
+            return ty_error_set(error, TY_NO_MEMORY, "no memory for a mask of %zu nodes", count);
+        baking b = {.field = f, .from = from, .nearest = nearest, .which = i, .out = host->masks[i]};
+        ty_parallel_all(workers, f->size[2], 2, layers_bake, &b);
     }
-    for (int i = 0; i < room; i++)
-        host_texture_term(&b->sources[i].texture);
-    ty_free(b->sources);
-    ty_free(b->own);
-    return status;
-}
-
-ty_status host_masks_make(roots_host* host, const ty_roots_host_def* def, const host_parts* parts,
-                          const int32_t* nearest, ty_workers* workers, ty_error* error)
-{
-    baking b = {.host = host, .parts = parts, .nearest = nearest};
-    ty_status status = TY_OK;
-    for (int i = 0; i < ROOTS_MASKS && status == TY_OK; i++)
-        status = mask_make(host, &b, def, i, workers, error);
-    return status;
+    return TY_OK;
 }
 
 float roots_host_mask(const roots_host* host, roots_mask which, ty_vec3 p, ty_vec3* gradient)

@@ -8,13 +8,31 @@
 static const ty_shape_kind shapes[] = {TY_SHAPE_SPHERE, TY_SHAPE_ELLIPSOID, TY_SHAPE_BOX, TY_SHAPE_CYLINDER,
                                        TY_SHAPE_STONE};
 
+enum
+{
+    FARTHEST = 1000000, // m from the origin
+    TIMES = 10000,      // of its longest side: beyond, numbers do not tell its parts from one another
+};
+
+// The file's own place, where it has one, goes after that of who names it.
+static ty_status file_read(const char* where, const char* path, ty_mesh** out, ty_error* error)
+{
+    ty_error inner = {0};
+    char text[900];
+    ty_status status = ty_mesh_read(path, out, &inner);
+    if (status == TY_OK)
+        return TY_OK;
+    ty_error_format(&inner, text, sizeof text);
+    return ty_error_set(error, status, "%s.mesh: %s", where, text);
+}
+
 static ty_status shape_make(const char* where, int kind, const char* mesh, const ty_shape_def* def, ty_mesh** out,
                             ty_error* error)
 {
     if (kind == TY_ROOTS_HOST_MESH && !mesh)
         return ty_error_set(error, TY_BAD_INPUT, "%s.mesh: the file is missing", where);
     if (kind == TY_ROOTS_HOST_MESH)
-        return ty_mesh_read(mesh, out, error);
+        return file_read(where, mesh, out, error);
     ty_shape_def shape = *def;
     shape.kind = shapes[kind];
     return ty_shape_create(&shape, out, error);
@@ -90,6 +108,16 @@ static ty_status merge(ty_mesh* const* parts, int count, ty_mesh** out, ty_error
     return status;
 }
 
+static ty_status reach_check(const char* where, const ty_mesh* mesh, ty_error* error)
+{
+    float reach = host_reach(mesh), side = host_longest(mesh), most = ty_min((float)TIMES * side, FARTHEST);
+    if (reach <= most)
+        return TY_OK;
+    return ty_error_set(error, TY_BAD_INPUT,
+                        "%s: it reaches %g m from the origin; at most %g m, %d times its longest side (%g m) or %d m",
+                        where, (double)reach, (double)most, TIMES, (double)side, FARTHEST);
+}
+
 // What moves and scales bring may be too large for numbers, or nothing.
 static ty_status mesh_finish(const char* where, ty_status status, ty_mesh** mesh, ty_error* error)
 {
@@ -97,8 +125,12 @@ static ty_status mesh_finish(const char* where, ty_status status, ty_mesh** mesh
         status = ty_mesh_validate(*mesh, where, error);
     if (status == TY_OK)
     {
-        ty_mesh_compute_welds(*mesh);
         ty_mesh_compute_bounds(*mesh);
+        status = reach_check(where, *mesh, error);
+    }
+    if (status == TY_OK)
+    {
+        ty_mesh_compute_welds(*mesh);
         return TY_OK;
     }
     ty_mesh_destroy(*mesh);

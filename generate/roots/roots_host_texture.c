@@ -51,9 +51,9 @@ ty_status host_texture_read(const char* key, const ty_roots_mask_def* def, host_
                             inner.text);
     if (status != TY_OK)
     {
-        if (error)
-            *error = inner;
-        return status;
+        char text[900];
+        ty_error_format(&inner, text, sizeof text);
+        return ty_error_set(error, status, "%s.texture: %s", key, text);
     }
     status = channel_take(key, def, &image, out, error);
     ty_image_term(&image);
