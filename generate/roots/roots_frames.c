@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Growth by time: the still mesh drawn in towards its centre lines, or a surface of its own for every frame.
 #include "roots_output.h"
+#include "roots_skin.h"
 #include <string.h>
 
 // The rest of the time is left to the last part to become thick in.
@@ -18,20 +19,23 @@ float roots_growth_at(float birth, float t)
     return 1.0f - left * left;
 }
 
-// A root lies on its host from the beginning: the centre of its section rises as it thickens.
-static ty_vec3 center_at(const roots_point* p, float grown)
-{
-    float held = ty_min(p->sink * 20.0f, 1.0f) * (p->flat - p->sink) * p->r;
-    return ty_mad(p->p, p->n, -held * (1.0f - grown));
-}
-
 // --- one topology ---
+
+// Where a vertex hangs: between a point of the centre lines and the next, and how far from there in the end.
+typedef struct hanging
+{
+    int point; // -1 = nowhere
+    float at;
+    ty_vec3 offset;
+} hanging;
 
 typedef struct drawing
 {
     const roots_result* result;
     ty_mesh* mesh;
-    roots_point* axis;       // [vertex_count] where the centre line is nearest
+    hanging* vertices; // [vertex_count]
+    roots_carry* carry;
+    ty_vec3* places;         // [point_count] of the centre lines at t
     const float *age, *full; // [vertex_count] of the still mesh: what it says is what happens
     float* radius;           // the same of mesh
     float t;
@@ -41,31 +45,66 @@ static void axes_find(void* context, int64_t begin, int64_t end, int worker)
 {
     const drawing* d = context;
     const ty_mesh* still = d->result->mesh;
+    const roots_skin* skin = d->result->skin;
     (void)worker;
     for (int64_t v = begin; v < end; v++)
     {
+        d->vertices[v] = (hanging){.point = -1};
         if (d->result->axes)
         {
-            d->axis[v] = d->result->axes[v];
+            d->vertices[v].offset = ty_sub(still->positions[v], d->result->axes[v].p);
             continue;
         }
-        roots_sample sample = roots_skin_at(d->result->skin, still->positions[v]);
-        d->axis[v] =
-            sample.segment >= 0 ? roots_skin_point(d->result->skin, sample) : (roots_point){.p = still->positions[v]};
+        roots_sample sample = roots_skin_at(skin, still->positions[v]);
+        if (sample.segment >= 0)
+            d->vertices[v] = (hanging){.point = skin->segments[sample.segment].point,
+                                       .at = sample.at,
+                                       .offset = ty_sub(still->positions[v], roots_skin_point(skin, sample).p)};
     }
 }
 
 static void vertices_draw(void* context, int64_t begin, int64_t end, int worker)
 {
     const drawing* d = context;
-    const ty_mesh* still = d->result->mesh;
     (void)worker;
     for (int64_t v = begin; v < end; v++)
     {
-        const roots_point* axis = &d->axis[v];
+        const hanging* h = &d->vertices[v];
         float grown = roots_growth_at(d->age[v], d->t);
-        d->mesh->positions[v] = ty_mad(center_at(axis, grown), ty_sub(still->positions[v], axis->p), grown);
+        ty_vec3 p = h->point < 0 ? (ty_vec3){0} : ty_lerp3(d->places[h->point], d->places[h->point + 1], h->at);
+        if (d->result->axes) // tubes, each by itself
+            p = roots_center_at(&d->result->axes[v], grown);
         d->radius[v] = d->full[v] * grown;
+        if (h->point >= 0 || d->result->axes)
+            d->mesh->positions[v] = ty_mad(p, h->offset, grown);
+    }
+}
+
+// The still mesh's normals know of bark; where the surface has turned away from them its own take over.
+static void normals_turn(const drawing* d, ty_vec3* sums)
+{
+    const ty_mesh* still = d->result->mesh;
+    ty_mesh* mesh = d->mesh;
+    memset(sums, 0, mesh->vertex_count * sizeof *sums);
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+    {
+        const uint32_t* c = mesh->triangles[t];
+        ty_vec3 a = mesh->positions[c[0]];
+        ty_vec3 n = ty_cross(ty_sub(mesh->positions[c[1]], a), ty_sub(mesh->positions[c[2]], a));
+        for (int k = 0; k < 3; k++)
+            sums[still->welds[c[k]]] = ty_add(sums[still->welds[c[k]]], n);
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+    {
+        ty_vec3 n = sums[still->welds[v]];
+        float length = ty_length(n);
+        mesh->normals[v] = still->normals[v];
+        if (!(length > 1e-12f))
+            continue;
+        n = ty_mul(n, 1.0f / length);
+        float kept = ty_clamp(2.5f * ty_dot(n, still->normals[v]) - 1.25f, 0.0f, 1.0f);
+        if (kept < 1.0f)
+            mesh->normals[v] = ty_normalize(ty_lerp3(n, still->normals[v], kept));
     }
 }
 
@@ -82,12 +121,15 @@ static ty_status frames_draw(const roots_result* result, const ty_mesh_sink* sin
 {
     int count = result->recipe->grow.frames;
     drawing d = {.result = result, .mesh = ty_mesh_copy(result->mesh)};
-    d.axis = TY_TRY_ALLOC(roots_point, d.mesh->vertex_count);
+    d.vertices = TY_TRY_ALLOC(hanging, d.mesh->vertex_count);
+    d.places = TY_TRY_ALLOC(ty_vec3, result->network->point_count);
+    d.carry = roots_carry_create(result->network, result->host, result->recipe->join, result->recipe->detail);
     d.age = ty_mesh_find_attribute(result->mesh, "age")->values;
     d.full = ty_mesh_find_attribute(result->mesh, "radius")->values;
     d.radius = ty_mesh_add_attribute(d.mesh, "radius", 1);
     ty_status status = TY_OK;
-    if (!d.axis)
+    ty_vec3* sums = TY_TRY_ALLOC(ty_vec3, d.mesh->vertex_count);
+    if (!d.vertices || !d.places || !d.carry || !sums)
         status = ty_error_set(error, TY_NO_MEMORY, "no memory for the growth of %u vertices", d.mesh->vertex_count);
     if (status == TY_OK && !ty_parallel_for(workers, d.mesh->vertex_count, 1024, axes_find, &d))
         status = ty_error_set(error, TY_INTERRUPTED, "interrupted while roots grew");
@@ -95,12 +137,18 @@ static ty_status frames_draw(const roots_result* result, const ty_mesh_sink* sin
     for (int frame = 1; frame < count && status == TY_OK; frame++)
     {
         d.t = (float)frame / (float)count;
+        roots_carry_at(d.carry, d.t, d.places);
         if (!ty_parallel_for(workers, d.mesh->vertex_count, 4096, vertices_draw, &d))
             status = ty_error_set(error, TY_INTERRUPTED, "interrupted at frame %d of the growth", frame);
         if (status == TY_OK)
+            normals_turn(&d, sums);
+        if (status == TY_OK)
             status = sink->put(sink->context, frame, d.mesh, error);
     }
-    ty_free(d.axis);
+    ty_free(sums);
+    ty_free(d.vertices);
+    ty_free(d.places);
+    roots_carry_destroy(d.carry);
     ty_mesh_destroy(d.mesh);
     return status;
 }
@@ -140,7 +188,7 @@ static int line_at(const roots_network* all, int number, float t, float finest, 
         float grown = roots_growth_at(p.birth, t);
         if (p.r * grown < finest && !(sprout && i < 2))
             break;
-        p.p = center_at(&p, grown);
+        p.p = roots_center_at(&p, grown);
         p.r = ty_max(p.r * grown, finest);
         points[all->lines[number].first + i] = out->point_count;
         roots_network_add_point(out, &p);

@@ -62,6 +62,14 @@ void roots_compare(const roots_result* result, ty_workers* workers, ty_sink* out
 
 // How thick a part is at t, 0..1, of its radius in the end. It never falls; 1 everywhere at t = 1.
 float roots_growth_at(float birth, float t);
+// A root lies on its host from the beginning: the centre of its section rises as it thickens.
+ty_vec3 roots_center_at(const roots_point* p, float grown);
+// Which roots run together in the end. join: of the thinner radius; detail: m, the surface's cells. NULL: no memory.
+typedef struct roots_carry roots_carry; // opaque
+roots_carry* roots_carry_create(const roots_network* network, const roots_host* host, float join, float detail);
+void roots_carry_destroy(roots_carry* carry); // NULL is allowed
+// Where the points of the centre lines are at t: [point_count]. At t = 1 they are where the network has them.
+void roots_carry_at(roots_carry* carry, float t, ty_vec3* places);
 // Frames 1..count of the growing mesh, the last the same as the still one bit for bit.
 TY_CHECKED ty_status roots_growth_frames(const roots_result* result, const ty_mesh_sink* sink, ty_workers* workers,
                                          ty_error* error);
