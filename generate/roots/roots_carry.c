@@ -26,6 +26,7 @@ typedef struct carried
 {
     link links[MOST_LINKS];
     int count;
+    int chosen; // of the links, where it waits; -1 = at the point before it
 } carried;
 
 struct roots_carry
@@ -35,7 +36,6 @@ struct roots_carry
     int *order, *rank; // [point_count] points by age, and where each stands among them
     int* line;         // [point_count]
     carried* items;    // [point_count]
-    float* present;    // [point_count] 0..1, at t: it has come, or what carries it has
 };
 
 // --- who is near ---
@@ -148,6 +148,28 @@ static void carried_find(roots_carry* c, const cells* near, int i, float join, f
                 }
 }
 
+// A line leaves where it waits late, so that few of its points wait elsewhere than their neighbours.
+static void waits_choose(roots_carry* c, const roots_line* line)
+{
+    int with = -1; // a line
+    for (int i = line->first; i < line->first + line->count; i++)
+    {
+        carried* all = &c->items[i];
+        float most = 0.5f;
+        all->chosen = -1;
+        for (int l = 0; l < all->count; l++)
+        {
+            bool stays = with >= 0 && c->line[all->links[l].by] == with && all->links[l].weight > 0.1f;
+            float weight = all->links[l].weight + (stays ? 2.0f : 0.0f);
+            if (weight <= most)
+                continue;
+            most = weight;
+            all->chosen = l;
+        }
+        with = all->chosen < 0 ? -1 : c->line[all->links[all->chosen].by];
+    }
+}
+
 // --- all of them ---
 
 typedef struct aged
@@ -190,13 +212,12 @@ roots_carry* roots_carry_create(const roots_network* network, const roots_host* 
                        .order = TY_TRY_ALLOC(int, count),
                        .rank = TY_TRY_ALLOC(int, count),
                        .line = TY_TRY_ALLOC(int, count),
-                       .items = TY_TRY_ALLOC(carried, count),
-                       .present = TY_TRY_ALLOC(float, count)};
+                       .items = TY_TRY_ALLOC(carried, count)};
     aged* all = TY_TRY_ALLOC(aged, count);
     cells* near = TY_ALLOC(cells, 1);
     near->size = most;
     near->next = TY_TRY_ALLOC(int, count);
-    bool enough = c->order && c->rank && c->line && c->items && c->present && all && near->next;
+    bool enough = c->order && c->rank && c->line && c->items && all && near->next;
     if (enough)
     {
         order_find(c, all);
@@ -211,6 +232,8 @@ roots_carry* roots_carry_create(const roots_network* network, const roots_host* 
         }
         for (int i = 0; i < count; i++)
             carried_find(c, near, i, join, detail, most);
+        for (int l = 0; l < network->line_count; l++)
+            waits_choose(c, &network->lines[l]);
     }
     ty_free(all);
     ty_free(near->next);
@@ -229,7 +252,6 @@ void roots_carry_destroy(roots_carry* c)
     ty_free(c->rank);
     ty_free(c->line);
     ty_free(c->items);
-    ty_free(c->present);
     ty_free(c);
 }
 
@@ -241,12 +263,23 @@ ty_vec3 roots_center_at(const roots_point* p, float grown)
     return ty_mad(p->p, p->n, -held * (1.0f - grown));
 }
 
-// What has not come yet waits at the point before it, and so all of it at the tip, or where its root will leave.
-static ty_vec3 waiting_at(const roots_carry* c, int i, const ty_vec3* places)
+// What has not come yet takes no room. Where it will be one with an older root it is a point of that root's side, or
+// waits where that waits; elsewhere it waits at the point before it, and so at the tip of its own. Never between two
+// places: of three that do not stand on one line there would be a skin.
+static ty_vec3 waiting_at(const roots_carry* c, int i, float t, const ty_vec3* places)
 {
     const roots_line* line = &c->network->lines[c->line[i]];
+    const carried* all = &c->items[i];
+    const link* best = all->chosen < 0 ? NULL : &all->links[all->chosen];
     int before = i > line->first ? i - 1 : line->parent >= 0 ? line->parent_point : -1;
-    return before >= 0 && c->rank[before] < c->rank[i] ? places[before] : roots_center_at(&c->network->points[i], 0.0f);
+    if (!best)
+        return before >= 0 && c->rank[before] < c->rank[i] ? places[before]
+                                                           : roots_center_at(&c->network->points[i], 0.0f);
+    float grown = roots_growth_at(c->network->points[best->by].birth, t);
+    if (grown == 0.0f)
+        return places[best->by];
+    float apart = best->reach[0] * grown / (best->reach[0] + best->reach[1]);
+    return ty_add(ty_mad(places[best->by], best->q, apart), best->along);
 }
 
 // A root on its host stays about where it is, however many carry one another; strands of the trunk part.
@@ -269,32 +302,34 @@ static ty_vec3 lifted(const roots_carry* c, int i, ty_vec3 own, ty_vec3 place)
     return height < wanted ? ty_mad(place, n, wanted - height) : place;
 }
 
-void roots_carry_at(roots_carry* c, float t, ty_vec3* places)
+// Of what has come.
+static ty_vec3 growing_at(const roots_carry* c, int i, float t, const ty_vec3* places)
 {
     const roots_point* points = c->network->points;
+    const carried* all = &c->items[i];
+    float grown = roots_growth_at(points[i].birth, t), sum = 0.0f, most = 0.0f;
+    ty_vec3 mean = {0.0f, 0.0f, 0.0f}, own = roots_center_at(&points[i], grown);
+    for (int l = 0; l < all->count; l++)
+    {
+        const link* one = &all->links[l];
+        float older = roots_growth_at(points[one->by].birth, t), part = ty_sqr(one->weight);
+        float apart = (one->reach[0] * older + one->reach[1] * grown) / (one->reach[0] + one->reach[1]);
+        mean = ty_mad(mean, ty_add(ty_mad(places[one->by], one->q, apart), one->along), part);
+        sum += part;
+        most = ty_max(most, one->weight);
+    }
+    if (!(sum > 0.0f))
+        return own;
+    ty_vec3 shift = ty_mul(ty_sub(ty_mul(mean, 1.0f / sum), own), most);
+    return lifted(c, i, own, ty_add(own, held_back(shift, &points[i])));
+}
+
+void roots_carry_at(const roots_carry* c, float t, ty_vec3* places)
+{
     for (int k = 0; k < c->network->point_count; k++)
     {
         int i = c->order[k];
-        const carried* all = &c->items[i];
-        float grown = roots_growth_at(points[i].birth, t), sum = 0.0f, most = 0.0f;
-        ty_vec3 mean = {0.0f, 0.0f, 0.0f};
-        ty_vec3 own = grown > 0.0f ? roots_center_at(&points[i], grown) : waiting_at(c, i, places);
-        for (int l = 0; l < all->count; l++)
-        {
-            const link* one = &all->links[l];
-            float older = roots_growth_at(points[one->by].birth, t);
-            float apart = (one->reach[0] * older + one->reach[1] * grown) / (one->reach[0] + one->reach[1]);
-            ty_vec3 p = ty_add(ty_mad(places[one->by], one->q, apart), one->along);
-            float weight = one->weight * c->present[one->by], part = ty_sqr(weight);
-            if (grown == 0.0f) // by one alone: between two it would hold a skin up from one to the other
-                part = ty_sqr(ty_sqr(part));
-            mean = ty_mad(mean, p, part);
-            sum += part;
-            most = ty_max(most, weight);
-        }
-        c->present[i] = grown > 0.0f ? 1.0f : most;
-        places[i] = sum > 0.0f ? ty_lerp3(own, ty_mul(mean, 1.0f / sum), most) : own;
-        if (grown > 0.0f)
-            places[i] = lifted(c, i, own, ty_add(own, held_back(ty_sub(places[i], own), &points[i])));
+        bool has_come = roots_growth_at(c->network->points[i].birth, t) > 0.0f;
+        places[i] = has_come ? growing_at(c, i, t, places) : waiting_at(c, i, t, places);
     }
 }

@@ -71,7 +71,8 @@ static void vertices_draw(void* context, int64_t begin, int64_t end, int worker)
     {
         const hanging* h = &d->vertices[v];
         float grown = roots_growth_at(d->age[v], d->t);
-        ty_vec3 p = h->point < 0 ? (ty_vec3){0} : ty_lerp3(d->places[h->point], d->places[h->point + 1], h->at);
+        float at = grown > 0.0f ? h->at : floorf(h->at + 0.5f); // what waits does not stand between two places
+        ty_vec3 p = h->point < 0 ? (ty_vec3){0} : ty_lerp3(d->places[h->point], d->places[h->point + 1], at);
         if (d->result->axes) // tubes, each by itself
             p = roots_center_at(&d->result->axes[v], grown);
         d->radius[v] = d->full[v] * grown;

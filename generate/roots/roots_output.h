@@ -69,7 +69,7 @@ typedef struct roots_carry roots_carry; // opaque
 roots_carry* roots_carry_create(const roots_network* network, const roots_host* host, float join, float detail);
 void roots_carry_destroy(roots_carry* carry); // NULL is allowed
 // Where the points of the centre lines are at t: [point_count]. At t = 1 they are where the network has them.
-void roots_carry_at(roots_carry* carry, float t, ty_vec3* places);
+void roots_carry_at(const roots_carry* carry, float t, ty_vec3* places);
 // Frames 1..count of the growing mesh, the last the same as the still one bit for bit.
 TY_CHECKED ty_status roots_growth_frames(const roots_result* result, const ty_mesh_sink* sink, ty_workers* workers,
                                          ty_error* error);

@@ -30,6 +30,7 @@ static ty_roots_recipe coarse(bool remesh)
     ty_roots_recipe recipe = ty_roots_recipe_default();
     recipe.tip = recipe.detail = 1.2e-3f;
     recipe.count = 5;
+    recipe.host.resolution = 96;
     recipe.grow.frames = FRAMES;
     recipe.grow.remesh = remesh;
     return recipe;
@@ -104,6 +105,69 @@ static void no_vertex_becomes_thinner(void** state)
     film_term(&f, still);
 }
 
+static double triangle_area(const ty_mesh* mesh, uint32_t t)
+{
+    const uint32_t* c = mesh->triangles[t];
+    ty_vec3 a = mesh->positions[c[0]];
+    return 0.5 * (double)ty_length(ty_cross(ty_sub(mesh->positions[c[1]], a), ty_sub(mesh->positions[c[2]], a)));
+}
+
+// Of a frame: the area of triangles with a corner that has not come, those of which reach farther than what has come is
+// wide, and of all.
+typedef struct skins
+{
+    double waiting, stretched, all;
+    int inverted; // triangles that face against the normals of all of their corners
+} skins;
+
+static skins measure(const ty_mesh* mesh, const ty_mesh* still)
+{
+    const float* radius = ty_mesh_find_attribute(mesh, "radius")->values;
+    skins out = {0};
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+    {
+        const uint32_t* c = mesh->triangles[t];
+        double area = triangle_area(mesh, t);
+        float least = ty_min(radius[c[0]], ty_min(radius[c[1]], radius[c[2]]));
+        float most = ty_max(radius[c[0]], ty_max(radius[c[1]], radius[c[2]])), longer = 0.0f;
+        for (int k = 0; k < 3; k++)
+        {
+            uint32_t a = c[k], b = c[(k + 1) % 3];
+            longer = ty_max(longer, ty_length(ty_sub(mesh->positions[a], mesh->positions[b])) -
+                                        ty_length(ty_sub(still->positions[a], still->positions[b])));
+        }
+        out.all += area;
+        out.waiting += least == 0.0f ? area : 0.0;
+        out.stretched += longer > 2.0f * most ? area : 0.0;
+        ty_vec3 p = mesh->positions[c[0]];
+        ty_vec3 n = ty_cross(ty_sub(mesh->positions[c[1]], p), ty_sub(mesh->positions[c[2]], p));
+        out.inverted += area > 1e-10 && ty_dot(n, mesh->normals[c[0]]) < 0.0f &&
+                        ty_dot(n, mesh->normals[c[1]]) < 0.0f && ty_dot(n, mesh->normals[c[2]]) < 0.0f;
+    }
+    return out;
+}
+
+// Between a root that is there and one that has not come, and between two that are still apart, no skin is held up.
+static void nothing_spans_what_has_not_come(void** state)
+{
+    (void)state;
+    ty_roots_recipe recipe = coarse(false);
+    film f;
+    ty_mesh* still;
+    film_make(&recipe, &f, &still);
+    double whole = measure(still, still).all;
+    for (int i = 1; i < FRAMES; i++)
+    {
+        skins s = measure(f.frames[i], still);
+        print_message("  frame %d: %.4f of the area is there, %.4f waits, %.4f is stretched, %d inverted\n", i,
+                      s.all / whole, s.waiting / whole, s.stretched / whole, s.inverted);
+        assert_true(s.waiting < 0.02 * whole);
+        assert_true(s.stretched < 0.06 * whole);
+        assert_true(s.inverted * 100 < (int)still->triangle_count);
+    }
+    film_term(&f, still);
+}
+
 static void remeshed_frames_are_whole(void** state)
 {
     (void)state;
@@ -129,6 +193,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_vertex_becomes_thinner),
+        cmocka_unit_test(nothing_spans_what_has_not_come),
         cmocka_unit_test(remeshed_frames_are_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
