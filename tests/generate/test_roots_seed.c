@@ -95,6 +95,18 @@ static double number(const json_t* methods, const char* method, const char* key)
     return json_number_value(value);
 }
 
+static void methods_print(const char* host, const json_t* m)
+{
+    static const char* const methods[] = {"seed", "wrap"};
+    for (int i = 0; i < 2; i++)
+        print_message("%-9s %s: %3.0f of %3.0f fail (%.0f no angle, %.0f restarts, %.0f no partner), %.0f kinked, "
+                      "%.2f r too deep, %.0f %% held\n",
+                      host, methods[i], number(m, methods[i], "failed"), number(m, methods[i], "branches"),
+                      number(m, methods[i], "no_angle"), number(m, methods[i], "restarts"),
+                      number(m, methods[i], "no_partner"), number(m, methods[i], "kinked"),
+                      number(m, methods[i], "deepest"), 100.0 * number(m, methods[i], "held"));
+}
+
 // --- what fails ---
 
 static void it_fails_where_ours_does_not(void** state)
@@ -107,12 +119,7 @@ static void it_fails_where_ours_does_not(void** state)
         double asked = number(m, "seed", "branches"), failed = number(m, "seed", "failed");
         double reasons = number(m, "seed", "no_angle") + number(m, "seed", "restarts") + number(m, "seed", "points") +
                          number(m, "seed", "no_partner");
-        print_message("%-9s seed: %.0f of %.0f fail, %.0f broken, %.0f kinked, %.2f r too deep, %.0f %% held; ours: "
-                      "%.0f of %.0f, %.0f kinked, %.2f r, %.0f %%\n",
-                      names[host], failed, asked, number(m, "seed", "broken"), number(m, "seed", "kinked"),
-                      number(m, "seed", "deepest"), 100.0 * number(m, "seed", "held"), number(m, "wrap", "failed"),
-                      number(m, "wrap", "branches"), number(m, "wrap", "kinked"), number(m, "wrap", "deepest"),
-                      100.0 * number(m, "wrap", "held"));
+        methods_print(names[host], m);
         assert_true(asked > 20.0 && failed == reasons);
         assert_true(failed > 0.2 * asked);
         assert_true(number(m, "seed", "kinked") > 2.0 && number(m, "seed", "deepest") > 0.5);
@@ -132,49 +139,86 @@ static void it_fails_where_ours_does_not(void** state)
 static void as_printed_roots_drift_away(void** state)
 {
     (void)state;
-    ty_roots_recipe recipe = recipe_for(PILLAR);
-    recipe.thesis.fall = 1.0f;
-    json_t* m = figures(&recipe);
-    assert_true(number(m, "seed", "held") < 0.1 && number(m, "wrap", "held") > 0.8);
-    json_decref(m);
+    for (int host = 0; host < HOSTS; host++)
+    {
+        ty_roots_recipe recipe = recipe_for(host);
+        recipe.thesis.fall = 1.0f;
+        json_t* m = figures(&recipe);
+        methods_print(names[host], m);
+        assert_true(number(m, "wrap", "held") > 0.8);
+        assert_true(number(m, "seed", "held") < (host == GROUND ? 0.6 : 0.1));
+        json_decref(m);
+    }
+}
+
+// A way of ours between the same places, which hang on to nothing else.
+static bool wraps(const growth* g, ty_vec3 a, ty_vec3 b, ty_vec3 na, ty_vec3 nb, uint64_t key, wrap* w)
+{
+    const roots_point from = {.p = a, .n = na, .r = 2e-3f, .flat = 1.0f},
+                      to = {.p = b, .n = nb, .r = 2e-3f, .flat = 1.0f};
+    ty_vec3 way = ty_normalize(ty_sub(b, a));
+    wrap_def def = {.a = from, .b = to, .ta = way, .tb = way, .r = 2e-3f, .flat = 1.0f, .wander = 0.05f, .key = key};
+    return roots_wrap(g, &def, w) != WRAP_NONE;
+}
+
+static bool kinked(const ty_vec3* p, int count)
+{
+    for (int i = 1; i + 1 < count; i++)
+    {
+        ty_vec3 u = ty_sub(p[i - 1], p[i]), v = ty_sub(p[i + 1], p[i]);
+        if (ty_dot(u, v) > ty_cos(ty_radians(100.0f)) * ty_length(u) * ty_length(v))
+            return true;
+    }
+    return false;
+}
+
+static ty_vec3 place_about(const roots_host* host, float turn, float y, ty_vec3* n)
+{
+    float s, c;
+    ty_sincos(turn, &s, &c);
+    return roots_host_project(host, (ty_vec3){0.045f * c, y, 0.045f * s}, 2.01e-3f, n);
 }
 
 // Places about the host as an independent re-implementation of the dodging took them: of 400 pairs it lost 236 on the
-// pillar and 219 on three boxes.
+// pillar and 219 on three boxes, with 159 and 179 kinked; ours lost none.
 static void pairs_about_a_pillar(void** state)
 {
     (void)state;
     static const int lost[HOSTS] = {0, 236, 219};
     seed_curve* c = TY_ALLOC(seed_curve, 1);
+    wrap* w = TY_ALLOC(wrap, 1);
     for (int host = PILLAR; host < HOSTS; host++)
     {
         ty_roots_recipe recipe = recipe_for(host);
-        roots_host on;
-        ty_error error;
+        grown on;
         recipe.host.floor = false;
-        assert_int_equal(roots_host_init(&recipe, NULL, NULL, &on, &error), TY_OK);
-        const growth g = {.recipe = &recipe, .host = &on};
+        grow(&recipe, NULL, &on);
+        const growth g = {.recipe = &recipe, .host = &on.host};
         const seed_run run = {.g = &g, .unit = 1e-3f, .r = 2e-3f};
-        int failed[ROOTS_FAILURES + 1] = {0};
+        int failed[ROOTS_FAILURES + 1] = {0}, kinks = 0, ours = 0, our_kinks = 0;
         for (uint64_t i = 0; i < 400; i++)
         {
             ty_rng rng = ty_rng_make((ty_seed){3}, i, 0);
-            float turn = ty_rng_range(&rng, 0.0f, 2.0f * TY_PI), y = ty_rng_range(&rng, -0.07f, 0.07f), s, k;
-            float on_turn = turn + ty_rng_range(&rng, 0.6f, 1.4f), aside = ty_rng_range(&rng, -8e-3f, 8e-3f);
-            ty_vec3 n;
-            ty_sincos(turn, &s, &k);
-            ty_vec3 a = roots_host_project(&on, (ty_vec3){0.045f * k, y, 0.045f * s}, 2.01e-3f, &n);
-            ty_sincos(on_turn, &s, &k);
-            ty_vec3 b = roots_host_project(&on, (ty_vec3){0.045f * k, y + aside, 0.045f * s}, 2.01e-3f, &n);
-            failed[seed_curve_find(&run, a, b, &rng, c)]++;
+            float turn = ty_rng_range(&rng, 0.0f, 2.0f * TY_PI), y = ty_rng_range(&rng, -0.07f, 0.07f);
+            float other = turn + ty_rng_range(&rng, 0.6f, 1.4f), aside = ty_rng_range(&rng, -8e-3f, 8e-3f);
+            ty_vec3 na, nb, a = place_about(&on.host, turn, y, &na), b = place_about(&on.host, other, y + aside, &nb);
+            roots_failure failure = seed_curve_find(&run, a, b, &rng, c);
+            failed[failure]++;
+            kinks += failure == ROOTS_FAILURES && kinked(c->places, c->count);
+            bool found = wraps(&g, a, b, na, nb, i, w);
+            ours += !found;
+            our_kinks += found && kinked(w->p, w->count);
         }
         int all = 400 - failed[ROOTS_FAILURES];
-        print_message("%-9s of 400 pairs %d fail: %d no angle, %d restarts, %d points\n", names[host], all,
-                      failed[ROOTS_NO_ANGLE], failed[ROOTS_RESTARTS], failed[ROOTS_POINTS]);
+        print_message("%-9s of 400 pairs %d fail (%d no angle, %d restarts), %d kinked; ours %d, %d kinked\n",
+                      names[host], all, failed[ROOTS_NO_ANGLE], failed[ROOTS_RESTARTS], kinks, ours, our_kinks);
         assert_in_range(all, lost[host] - 60, lost[host] + 60);
-        roots_host_term(&on);
+        assert_true(kinks > 100);
+        assert_int_equal(ours + our_kinks, 0);
+        drop(&on);
     }
     ty_free(c);
+    ty_free(w);
 }
 
 // --- its formulas ---
