@@ -279,16 +279,31 @@ static void lines_are_those_of_the_thesis(void** state)
             assert_true(p[k].r == recipe.radius && p[k].flat == 1.0f);
     }
     assert_true(firsts > 10 && seconds > 5 && 2 * bent > firsts);
-    // main roots never meet the host, before branches bend them
-    recipe.count = 1;
     drop(&g);
+}
+
+// Before branches bend them: one that creeps over the ground up to a wall.
+static void main_roots_do_not_enter_the_host(void** state)
+{
+    (void)state;
+    ty_roots_recipe recipe = recipe_for(GROUND);
+    ty_roots_object_def* objects = recipe.host.objects.items;
+    grown g;
+    objects[1] = box((ty_vec3){0.005f, 0.05f, 0.3f}, (ty_vec3){0.06f, 0.05f, 0.0f});
+    recipe.host.objects.count = 2;
+    recipe.start.points = (ty_param_list){(ty_vec3[]){{0.0f, 0.01f, 0.0f}}, 1};
+    recipe.count = 1;
+    recipe.length = 0.25f; // not to where the wall ends
     grow(&recipe, NULL, &g);
+    float farthest = 0.0f;
     assert_int_equal(g.net.line_count, 1);
     for (int k = 0; k < g.net.point_count; k++)
     {
         ty_vec3 n;
         assert_true(roots_host_exact(&g.host, g.net.points[k].p, 0.01f, &n) >= recipe.radius);
+        farthest = ty_max(farthest, g.net.points[k].p.x);
     }
+    assert_true(farthest > 0.04f && farthest < 0.053f); // it came to the wall
     drop(&g);
 }
 
@@ -321,6 +336,7 @@ int main(void)
         cmocka_unit_test(as_printed_roots_drift_away),
         cmocka_unit_test(pairs_about_a_pillar),
         cmocka_unit_test(lines_are_those_of_the_thesis),
+        cmocka_unit_test(main_roots_do_not_enter_the_host),
         cmocka_unit_test(workers_and_repeats_change_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -249,6 +249,36 @@ static void tubes_grow_and_come_from_files(void** state)
     }
 }
 
+static ty_status level_put(void* context, int level, ty_mesh* mesh, ty_error* error)
+{
+    (void)error;
+    assert_non_null(mesh);
+    *(int*)context = level;
+    return TY_OK;
+}
+
+static void memory_may_end_anywhere(void** state)
+{
+    (void)state;
+    ty_roots_recipe recipe = recipe_for(TY_ROOTS_WRAP);
+    ty_status status = TY_NO_MEMORY;
+    recipe.count = 2;
+    recipe.first.spacing = 0.0f;
+    recipe.levels = 2;
+    for (long i = 0; status != TY_OK && i < 200; i++)
+    {
+        ty_error error;
+        int level = 0;
+        ty_made made = {.levels = {level_put, &level}};
+        ty_memory_fail_after(i);
+        status = ty_roots_make_all(&recipe, NULL, &made, &error);
+        ty_memory_fail_after(-1);
+        assert_true(status == TY_OK ? made.mesh && level == 1 : status == TY_NO_MEMORY && !made.mesh);
+        ty_mesh_destroy(made.mesh);
+    }
+    assert_int_equal(status, TY_OK);
+}
+
 static void odd_sections_are_refused(void** state)
 {
     (void)state;
@@ -268,6 +298,7 @@ int main(void)
         cmocka_unit_test(files_hold_all_that_stands_at_vertices),
         cmocka_unit_test(tubes_grow_and_come_from_files),
         cmocka_unit_test(odd_sections_are_refused),
+        cmocka_unit_test(memory_may_end_anywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
