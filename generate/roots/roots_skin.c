@@ -221,6 +221,22 @@ typedef struct raising
     ty_mesh* mesh;
 } raising;
 
+// No vertex goes deeper than it may.
+static ty_vec3 vertex_hold(void* context, ty_vec3 p)
+{
+    const roots_skin* skin = context;
+    for (int i = 0; i < 3; i++) // it may come to another root
+    {
+        ty_vec3 was = p;
+        roots_sample sample = roots_skin_at(skin, p);
+        if (sample.segment >= 0)
+            roots_skin_keep(skin, sample, &p);
+        if (memcmp(&was, &p, sizeof p) == 0)
+            break;
+    }
+    return p;
+}
+
 // Between the grid's nodes the net knows the field in part, of roots hardly wider than a cell least: each vertex goes
 // to the zero of the roots themselves, some parts of a cell, and out by the relief of the bark, and not too deep.
 static void vertices_raise(void* context, int64_t begin, int64_t end, int worker)
@@ -241,8 +257,7 @@ static void vertices_raise(void* context, int64_t begin, int64_t end, int worker
         sample = roots_skin_look(r->skin, *p, &n, &relief);
         if (sample.segment < 0)
             continue;
-        *p = ty_mad(*p, n, relief - ty_clamp(sample.distance, -most, most));
-        roots_skin_keep(r->skin, sample, p);
+        *p = vertex_hold((void*)r->skin, ty_mad(*p, n, relief - ty_clamp(sample.distance, -most, most)));
     }
 }
 
@@ -287,7 +302,7 @@ static void vertices_seat(void* context, int64_t begin, int64_t end, int worker)
             continue;
         roots_point own = roots_skin_point(s->skin, sample);
         if (own.sink > 0.0f && height < FILL_MOST * own.r && ty_dot(ty_sub(*p, own.p), own.n) < 0.0f)
-            *p = ty_mad(*p, ty_normalize(up), -height - 0.5f * own.sink * own.r);
+            *p = vertex_hold((void*)s->skin, ty_mad(*p, ty_normalize(up), -height - 0.5f * own.sink * own.r));
     }
 }
 
@@ -350,7 +365,7 @@ ty_status roots_skin_mesh(const roots_skin* skin, ty_workers* workers, ty_mesh**
         status = surface_seat(skin, *out, workers, error);
     double raised = ty_time_now();
     if (status == TY_OK)
-        status = ty_mesh_mend_corners(*out, corner, NULL, error);
+        status = ty_mesh_mend_corners(*out, corner, vertex_hold, (void*)skin, NULL, error);
     ty_log(TY_LOG_DEBUG, "roots: bark raised in %.2f s, corners mended in %.2f s", raised - start,
            ty_time_now() - raised);
     if (status != TY_OK)

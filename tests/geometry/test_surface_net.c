@@ -61,7 +61,7 @@ static ty_status mesh_try(field* f, int rounds, bool mend, ty_workers* workers, 
     status = ty_net_relax(net, rounds, workers) ? ty_net_mesh(net, out, pieces, &error) : TY_INTERRUPTED;
     ty_net_destroy(net);
     if (status == TY_OK && mend)
-        status = ty_mesh_mend_corners(*out, CORNER, NULL, &error);
+        status = ty_mesh_mend_corners(*out, CORNER, NULL, NULL, NULL, &error);
     return status;
 }
 
@@ -322,10 +322,16 @@ static void pieces_are_counted_and_the_largest_kept(void** state)
     ty_mesh_destroy(mesh);
 }
 
-// A ball of rings: needles at its poles, which any flip, collapse or move has to get out of.
-static void corners_are_mended(void** state)
+static ty_vec3 on_the_ball(void* context, ty_vec3 p)
 {
-    (void)state;
+    int* asked = context;
+    ++*asked;
+    return ty_normalize(p);
+}
+
+// A ball of rings: needles at its poles, which any flip, collapse or move has to get out of.
+static ty_mesh* ball_of_rings(void)
+{
     enum
     {
         RINGS = 24,
@@ -354,15 +360,58 @@ static void corners_are_mended(void** state)
             t += 2;
         }
     }
-    float before = smallest_corner(mesh), after;
+    return mesh;
+}
+
+static void corners_are_mended(void** state)
+{
+    (void)state;
+    for (int held = 0; held < 2; held++)
+    {
+        ty_mesh* mesh = ball_of_rings();
+        float before = smallest_corner(mesh), after;
+        int asked = 0;
+        ty_error error;
+        assert_true(before < ty_radians(5.0f));
+        ty_mesh_hold* hold = held ? on_the_ball : NULL;
+        assert_int_equal(ty_mesh_mend_corners(mesh, CORNER, hold, &asked, &after, &error), TY_OK);
+        assert_one_shell(mesh);
+        assert_true(smallest_corner(mesh) >= CORNER);
+        assert_float_equal(after, smallest_corner(mesh), 1e-3f);
+        for (uint32_t v = 0; v < mesh->vertex_count; v++)
+            assert_float_equal(ty_length(mesh->positions[v]), 1.0f, held ? 1e-6f : 0.02f);
+        assert_int_equal(asked > 0, held);
+        ty_mesh_destroy(mesh);
+    }
+}
+
+// A tube of three corners, long against its width: no edge about it can go, as that would close it, no flip helps, and
+// within its faces there is no room.
+static void necks_get_room(void** state)
+{
+    (void)state;
+    enum
+    {
+        RINGS = 12,
+    };
+    static const ty_vec3 section[3] = {{0.0f, 0.0f, 0.0f}, {0.05f, 0.0f, 0.0f}, {0.1f, 0.05f, 0.0f}};
+    ty_mesh* mesh = ty_mesh_create(3 * RINGS, 6 * (RINGS - 1) + 2);
+    for (uint32_t i = 0; i < 3 * RINGS; i++)
+        mesh->positions[i] = ty_add(section[i % 3], ty_vec3_make(0.0f, 0.0f, (float)(i / 3)));
+    for (uint32_t i = 0; i < 3 * (RINGS - 1); i++)
+    {
+        uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
+        ty_mesh_set_quad(mesh, 2 * i, (const uint32_t[4]){i, next, next + 3, i + 3});
+    }
+    uint32_t caps = 6 * (RINGS - 1), last = 3 * (RINGS - 1);
+    memcpy(mesh->triangles[caps], (uint32_t[3]){0, 2, 1}, sizeof(uint32_t[3]));
+    memcpy(mesh->triangles[caps + 1], (uint32_t[3]){last, last + 1, last + 2}, sizeof(uint32_t[3]));
     ty_error error;
-    assert_true(before < ty_radians(5.0f));
-    assert_int_equal(ty_mesh_mend_corners(mesh, CORNER, &after, &error), TY_OK);
     assert_one_shell(mesh);
-    assert_true(smallest_corner(mesh) >= CORNER);
-    assert_float_equal(after, smallest_corner(mesh), 1e-3f);
-    for (uint32_t v = 0; v < mesh->vertex_count; v++)
-        assert_float_equal(ty_length(mesh->positions[v]), 1.0f, 0.02f);
+    assert_true(smallest_corner(mesh) < ty_radians(3.0f));
+    assert_int_equal(ty_mesh_mend_corners(mesh, CORNER, NULL, NULL, NULL, &error), TY_OK);
+    assert_one_shell(mesh);
+    assert_true(smallest_corner(mesh) > ty_radians(15.0f));
     ty_mesh_destroy(mesh);
 }
 
@@ -437,6 +486,7 @@ int main(void)
         cmocka_unit_test(chance_stays_manifold),
         cmocka_unit_test(pieces_are_counted_and_the_largest_kept),
         cmocka_unit_test(corners_are_mended),
+        cmocka_unit_test(necks_get_room),
         cmocka_unit_test(workers_change_no_bit),
         cmocka_unit_test(memory_may_end_anywhere),
         cmocka_unit_test(nothing_is_refused_and_a_signal_ends_it),

@@ -49,7 +49,12 @@ typedef struct ty_net_pieces
 // failure.
 TY_CHECKED ty_status ty_net_mesh(const ty_net* net, ty_mesh** out, ty_net_pieces* pieces, ty_error* error);
 
+// Where a vertex may stand that is meant to go to p; one that stands there stays.
+typedef ty_vec3 ty_mesh_hold(void* context, ty_vec3 p);
+
 // Flips and collapses edges and moves vertices along the surface by fractions of an edge until no corner is smaller
-// than `corner` (rad) or nothing helps any more. Of closed two-manifolds, which they stay; positions and triangles
-// alone. *smallest is what is left, NULL is allowed.
-TY_CHECKED ty_status ty_mesh_mend_corners(ty_mesh* mesh, float corner, float* smallest, ty_error* error);
+// than `corner` (rad) or nothing helps any more; about what is smaller than 17 degrees then they leave it a little. Of
+// closed two-manifolds, which they stay; positions and triangles alone. hold, with its context, is asked for every
+// place that a vertex goes to; NULL: all may. *smallest is what is left, NULL is allowed.
+TY_CHECKED ty_status ty_mesh_mend_corners(ty_mesh* mesh, float corner, ty_mesh_hold* hold, void* context,
+                                          float* smallest, ty_error* error);
