@@ -67,6 +67,14 @@ static const char* const host_kinds[] = {"sphere", "ellipsoid", "box", "cylinder
         FIELD("variant", TY_PARAM_INT, "", 0, 1000000, shape.variant, "which stone"),                                  \
         FIELD("divisions", TY_PARAM_INT, "", 8, 4096, shape.divisions, "segments around; roots feel facets")
 
+// The table of a part of the recipe, whose defaults are the recipe's.
+#define PART(name, member, heading, help, rows)                                                                        \
+    static void set_##name(void* def)                                                                                  \
+    {                                                                                                                  \
+        *(OWNER*)def = ty_roots_recipe_default().member;                                                               \
+    }                                                                                                                  \
+    TABLE(name, heading, help, rows)
+
 // --- masks ---
 
 static void set_mask_table(void* def)
@@ -121,11 +129,6 @@ TABLE(part_table, "roots.part", "Part of a host.", part_rows);
 
 // --- host ---
 
-static void set_host_table(void* def)
-{
-    *(ty_roots_host_def*)def = ty_roots_recipe_default().host;
-}
-
 #define OWNER ty_roots_host_def
 static const ty_param host_rows[] = {
     SHAPE_ROWS,
@@ -136,7 +139,7 @@ static const ty_param host_rows[] = {
     MASK("avoid", avoid, "roots keep from where it is 1"),
     MASK("attract", attract, "roots are drawn to where it is 1"),
 };
-TABLE(host_table, "roots.host", "What the roots hold on to; it is no part of the result.", host_rows);
+PART(host_table, host, "roots.host", "What the roots hold on to; it is no part of the result.", host_rows);
 #undef OWNER
 
 // --- start ---
@@ -157,11 +160,6 @@ TABLE(start_table, "roots.start", "Where main roots start, in place of the trunk
 
 // --- trunk ---
 
-static void set_trunk_table(void* def)
-{
-    *(ty_roots_trunk_def*)def = ty_roots_recipe_default().trunk;
-}
-
 #define OWNER ty_roots_trunk_def
 static const ty_param trunk_rows[] = {
     FIELD("height", TY_PARAM_FLOAT, "m", 0, 1e3, height,
@@ -169,15 +167,10 @@ static const ty_param trunk_rows[] = {
     FIELD("radius", TY_PARAM_FLOAT, "mm", 0.1, 1e6, radius, "where the main roots leave it"),
     FIELD("lean", TY_PARAM_FLOAT3, "m", -1e3, 1e3, lean, "the place of its cut against that above the host's middle"),
 };
-TABLE(trunk_table, "roots.trunk", "Where the main roots come from.", trunk_rows);
+PART(trunk_table, trunk, "roots.trunk", "Where the main roots come from.", trunk_rows);
 #undef OWNER
 
 // --- growth ---
-
-static void set_growth_table(void* def)
-{
-    *(ty_roots_growth_def*)def = ty_roots_recipe_default().growth;
-}
 
 #define OWNER ty_roots_growth_def
 static const ty_param growth_rows[] = {
@@ -195,20 +188,10 @@ static const ty_param growth_rows[] = {
     FIELD("attract", TY_PARAM_FLOAT, "", 0, 10, attract, "weight of going to where host.attract is painted"),
     FIELD("clear", TY_PARAM_FLOAT, "", 1, 100, clear, "how far from obstacles roots keep, of the radius"),
 };
-TABLE(growth_table, "roots.growth", "How a tip finds its way.", growth_rows);
+PART(growth_table, growth, "roots.growth", "How a tip finds its way.", growth_rows);
 #undef OWNER
 
 // --- branches ---
-
-static void set_first_table(void* def)
-{
-    *(ty_roots_link_def*)def = ty_roots_recipe_default().first;
-}
-
-static void set_second_table(void* def)
-{
-    *(ty_roots_link_def*)def = ty_roots_recipe_default().second;
-}
 
 #define OWNER ty_roots_link_def
 static const ty_param link_rows[] = {
@@ -218,57 +201,37 @@ static const ty_param link_rows[] = {
     FIELD("share", TY_PARAM_FLOAT2, "", 0.1, 0.95, share, "radius against the thinner of both: from, to"),
     FIELD("wander", TY_PARAM_FLOAT, "", 0, 1, wander, "how far they swing to the side, of the way across"),
 };
-TABLE(first_table, "roots.first", "Branches from a main root to the next.", link_rows);
-TABLE(second_table, "roots.second", "Branches between first branches.", link_rows);
+PART(first_table, first, "roots.first", "Branches from a main root to the next.", link_rows);
+PART(second_table, second, "roots.second", "Branches between first branches.", link_rows);
 #undef OWNER
-
-static void set_aerial_table(void* def)
-{
-    *(ty_roots_aerial_def*)def = ty_roots_recipe_default().aerial;
-}
 
 #define OWNER ty_roots_aerial_def
 static const ty_param aerial_rows[] = {
     FIELD("count", TY_PARAM_INT, "", 0, 1000, count, "of roots that hang from the host"),
     FIELD("share", TY_PARAM_FLOAT2, "", 0.02, 1, share, "radius against a main root's: from, to"),
 };
-TABLE(aerial_table, "roots.aerial", "Roots that hang free until they find ground.", aerial_rows);
+PART(aerial_table, aerial, "roots.aerial", "Roots that hang free until they find ground.", aerial_rows);
 #undef OWNER
-
-static void set_cover_table(void* def)
-{
-    *(ty_roots_cover_def*)def = ty_roots_recipe_default().cover;
-}
 
 #define OWNER ty_roots_cover_def
 static const ty_param cover_rows[] = {
     FIELD("spacing", TY_PARAM_FLOAT, "mm", 0, 1e6, spacing, "between places that fine roots grow towards; 0 = none"),
     FIELD("radius", TY_PARAM_FLOAT, "mm", 0.05, 1e6, radius, "of a fine root"),
 };
-TABLE(cover_table, "roots.cover", "Fine roots over what is left of the host, by space colonisation.", cover_rows);
+PART(cover_table, cover, "roots.cover", "Fine roots over what is left of the host, by space colonisation.", cover_rows);
 #undef OWNER
 
 // --- the thesis' own method ---
-
-static void set_thesis_table(void* def)
-{
-    *(ty_roots_thesis_def*)def = ty_roots_recipe_default().thesis;
-}
 
 #define OWNER ty_roots_thesis_def
 static const ty_param thesis_rows[] = {
     FIELD("unit", TY_PARAM_FLOAT, "", 0.01, 100, unit, "unit of the thesis' lengths, of the radius"),
     FIELD("fall", TY_PARAM_FLOAT, "", 0, 1e6, fall, "weight of down in the way of a main root; 1 as printed"),
 };
-TABLE(thesis_table, "roots.thesis", "What only method seed has.", thesis_rows);
+PART(thesis_table, thesis, "roots.thesis", "What only method seed has.", thesis_rows);
 #undef OWNER
 
 // --- tubes ---
-
-static void set_tubes_table(void* def)
-{
-    *(ty_roots_tubes_def*)def = ty_roots_recipe_default().tubes;
-}
 
 #define OWNER ty_roots_tubes_def
 static const ty_param tubes_rows[] = {
@@ -277,15 +240,10 @@ static const ty_param tubes_rows[] = {
     FIELD("junction", TY_PARAM_FLOAT, "", 0, 4, junction,
           "how far branches spread along the roots that they meet, 1 as in the thesis; 0 = not at all"),
 };
-TABLE(tubes_table, "roots.tubes", "A tube for each root, not welded, with uv as strips.", tubes_rows);
+PART(tubes_table, tubes, "roots.tubes", "A tube for each root, not welded, with uv as strips.", tubes_rows);
 #undef OWNER
 
 // --- growth by time ---
-
-static void set_grow_table(void* def)
-{
-    *(ty_roots_grow_def*)def = ty_roots_recipe_default().grow;
-}
 
 #define OWNER ty_roots_grow_def
 static const ty_param grow_rows[] = {
@@ -293,7 +251,7 @@ static const ty_param grow_rows[] = {
     FIELD("remesh", TY_PARAM_BOOL, "", 0, 0, remesh,
           "a surface of its own for each frame; else one topology, which can be blurred by motion"),
 };
-TABLE(grow_table, "roots.grow", "The same roots as they come about.", grow_rows);
+PART(grow_table, grow, "roots.grow", "The same roots as they come about.", grow_rows);
 #undef OWNER
 
 // --- the recipe ---

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hosts for roots, as files: each a few closed parts and all of them as one mesh.
+// Hosts for roots, as files: of a few closed parts, as those and as one mesh; and whole ones, by their distance.
 #pragma once
 #include "base/cmocka_all.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <tsuya/base/noise.h>
 #include <tsuya/geometry/mesh_file.h>
 #include <tsuya/geometry/shape.h>
+#include <tsuya/geometry/surface_net.h>
 
 typedef struct host_files
 {
@@ -15,7 +18,7 @@ typedef struct host_files
     int count;
 } host_files;
 
-static ty_mesh* host_shape(ty_shape_kind kind, ty_vec3 size, float rounding, ty_vec3 at)
+static inline ty_mesh* host_shape(ty_shape_kind kind, ty_vec3 size, float rounding, ty_vec3 at)
 {
     ty_error error;
     ty_mesh* mesh;
@@ -34,7 +37,7 @@ static ty_mesh* host_shape(ty_shape_kind kind, ty_vec3 size, float rounding, ty_
 }
 
 // A tube about the (2, 3) torus knot.
-static ty_mesh* host_knot(float size, float radius, int along, int around)
+static inline ty_mesh* host_knot(float size, float radius, int along, int around)
 {
     ty_mesh* mesh = ty_mesh_create((uint32_t)(along * around), (uint32_t)(2 * along * around));
     for (int i = 0; i < along; i++)
@@ -66,7 +69,7 @@ static ty_mesh* host_knot(float size, float radius, int along, int around)
 }
 
 // A ball with the relief of three octaves of waves.
-static ty_mesh* host_ball(float radius, int divisions)
+static inline ty_mesh* host_ball(float radius, int divisions)
 {
     ty_error error;
     ty_mesh* mesh;
@@ -81,7 +84,7 @@ static ty_mesh* host_ball(float radius, int divisions)
 }
 
 // Takes the parts.
-static void host_save(const char* name, ty_mesh** parts, int count, host_files* out)
+static inline void host_save(const char* name, ty_mesh** parts, int count, host_files* out)
 {
     ty_error error;
     uint32_t vertices = 0, triangles = 0;
@@ -114,7 +117,7 @@ static void host_save(const char* name, ty_mesh** parts, int count, host_files* 
 }
 
 // Of a few decimetres; detail is 1 for what takes seconds.
-static void host_make(const char* name, int detail, host_files* out)
+static inline void host_make(const char* name, int detail, host_files* out)
 {
     ty_mesh* parts[8];
     int count = 1;
@@ -143,4 +146,155 @@ static void host_make(const char* name, int detail, host_files* out)
     else
         parts[0] = host_ball(0.05f, detail > 1 ? 1024 : 96);
     host_save(name, parts, count, out);
+}
+
+// --- by their distance ---
+
+typedef float host_distance(ty_vec3 p);
+
+static inline float distance_box(ty_vec3 p, ty_vec3 c, ty_vec3 half)
+{
+    ty_vec3 q = {fabsf(p.x - c.x) - half.x, fabsf(p.y - c.y) - half.y, fabsf(p.z - c.z) - half.z};
+    ty_vec3 out = {ty_max(q.x, 0.0f), ty_max(q.y, 0.0f), ty_max(q.z, 0.0f)};
+    return ty_length(out) + ty_min(ty_max(q.x, ty_max(q.y, q.z)), 0.0f);
+}
+
+static inline float distance_ball(ty_vec3 p, ty_vec3 c, ty_vec3 axes)
+{
+    ty_vec3 q = ty_sub(p, c);
+    q = ty_vec3_make(q.x / axes.x, q.y / axes.y, q.z / axes.z);
+    return (ty_length(q) - 1.0f) * ty_min(axes.x, ty_min(axes.y, axes.z));
+}
+
+// A shaft with two blocks built into it.
+static inline float distance_compound(ty_vec3 p)
+{
+    float d = distance_box(p, (ty_vec3){0.0f, 0.0f, 0.0f}, (ty_vec3){0.02f, 0.1f, 0.02f});
+    d = ty_min(d, distance_box(p, (ty_vec3){0.012f, 0.02f, 0.014f}, (ty_vec3){0.018f, 0.012f, 0.018f}));
+    return ty_min(d, distance_box(p, (ty_vec3){-0.016f, -0.03f, 0.0f}, (ty_vec3){0.014f, 0.02f, 0.012f}));
+}
+
+// Head, neck, shoulders, pedestal.
+static inline float distance_bust(ty_vec3 p)
+{
+    float d = distance_ball(p, (ty_vec3){0.0f, 0.075f, 0.0f}, (ty_vec3){0.024f, 0.03f, 0.027f});
+    d = ty_min(d, distance_ball(p, (ty_vec3){0.0f, 0.072f, 0.026f}, (ty_vec3){0.005f, 0.009f, 0.008f}));
+    d = ty_min(d, distance_box(p, (ty_vec3){0.0f, 0.035f, 0.0f}, (ty_vec3){0.012f, 0.022f, 0.012f}) - 0.002f);
+    d = ty_min(d, distance_ball(p, (ty_vec3){0.0f, 0.0f, 0.0f}, (ty_vec3){0.055f, 0.026f, 0.028f}));
+    return ty_min(d, distance_box(p, (ty_vec3){0.0f, -0.055f, 0.0f}, (ty_vec3){0.03f, 0.045f, 0.026f}));
+}
+
+typedef struct host_net
+{
+    host_distance* distance;
+    ty_vec3 origin;
+    float step;
+} host_net;
+
+static inline void host_fill(void* context, const int block[3], float values[TY_NET_NODES])
+{
+    const host_net* net = context;
+    for (int i = 0; i < TY_NET_NODES; i++)
+    {
+        int x = block[0] * TY_NET_BLOCK + i % TY_NET_BLOCK,
+            y = block[1] * TY_NET_BLOCK + i / TY_NET_BLOCK % TY_NET_BLOCK;
+        int z = block[2] * TY_NET_BLOCK + i / (TY_NET_BLOCK * TY_NET_BLOCK);
+        values[i] = net->distance(ty_mad(net->origin, (ty_vec3){(float)x, (float)y, (float)z}, net->step));
+    }
+}
+
+static inline void host_write(const char* path, ty_mesh* mesh)
+{
+    ty_error error = {0};
+    ty_mesh_compute_welds(mesh);
+    ty_mesh_compute_normals(mesh, TY_PI);
+    ty_mesh_compute_bounds(mesh);
+    if (ty_ply_write(path, mesh, &error) != TY_OK)
+        abort();
+    ty_mesh_destroy(mesh);
+}
+
+static inline void host_implicit(const char* path, host_distance* distance, ty_vec3 half, float step)
+{
+    host_net context = {distance, ty_neg(half), step};
+    ty_net_def def = {.origin = context.origin, .step = step, .fill = host_fill, .context = &context};
+    const float size[3] = {half.x, half.y, half.z};
+    ty_net* net;
+    ty_mesh* mesh;
+    ty_error error = {0};
+    def.active_count = 1;
+    for (int i = 0; i < 3; i++)
+        def.active_count *= def.blocks[i] = (int)(2.0f * size[i] / (step * TY_NET_BLOCK)) + 1;
+    int32_t* active = malloc((size_t)def.active_count * sizeof *active);
+    for (int i = 0; i < def.active_count; i++)
+        active[i] = i;
+    def.active = active;
+    if (ty_net_create(&def, NULL, &net, &error) != TY_OK || ty_net_mesh(net, &mesh, NULL, &error) != TY_OK)
+        abort();
+    ty_net_destroy(net);
+    free(active);
+    host_write(path, mesh);
+}
+
+// The (2, 3) torus knot as a closed tube, about z.
+static inline void host_lying_knot(const char* path, float size, float tube, int along, int around)
+{
+    ty_mesh* mesh = ty_mesh_create((uint32_t)(along * around), (uint32_t)(2 * along * around));
+    for (int i = 0; i < along; i++)
+    {
+        ty_vec3 p[3];
+        for (int k = -1; k <= 1; k++)
+        {
+            float a = 2.0f * TY_PI * (float)(i + k) / (float)along, s2, c2, s3, c3;
+            ty_sincos(2.0f * a, &s2, &c2);
+            ty_sincos(3.0f * a, &s3, &c3);
+            p[k + 1] = ty_mul((ty_vec3){(2.0f + c3) * c2, (2.0f + c3) * s2, 1.3f * s3}, size / 3.0f);
+        }
+        ty_vec3 t = ty_normalize(ty_sub(p[2], p[0])), u = ty_normalize(ty_cross(t, (ty_vec3){0.0f, 0.0f, 1.0f}));
+        ty_vec3 v = ty_cross(t, u);
+        for (int j = 0; j < around; j++)
+        {
+            float s, c;
+            ty_sincos(2.0f * TY_PI * (float)j / (float)around, &s, &c);
+            mesh->positions[i * around + j] = ty_mad(ty_mad(p[1], u, tube * c), v, tube * s);
+            uint32_t corner[4] = {(uint32_t)(i * around + j), (uint32_t)(i * around + (j + 1) % around),
+                                  (uint32_t)((i + 1) % along * around + (j + 1) % around),
+                                  (uint32_t)((i + 1) % along * around + j)};
+            uint32_t turned[4] = {corner[0], corner[3], corner[2], corner[1]};
+            ty_mesh_set_quad(mesh, (uint32_t)(2 * (i * around + j)), turned);
+        }
+    }
+    ty_mesh_compute_welds(mesh);
+    ty_mesh_topology topology;
+    ty_mesh_analyse(mesh, &topology);
+    for (uint32_t i = 0; topology.volume < 0.0 && i < mesh->triangle_count; i++)
+    {
+        uint32_t* c = mesh->triangles[i];
+        uint32_t swap = c[1];
+        c[1] = c[2];
+        c[2] = swap;
+    }
+    host_write(path, mesh);
+}
+
+// A ball of 0.75 divisions^2 triangles, displaced by noise.
+static inline void host_rough(const char* path, float radius, int divisions)
+{
+    ty_shape_def def = ty_shape_def_default();
+    def.kind = TY_SHAPE_SPHERE;
+    def.radius = radius;
+    def.divisions = divisions;
+    ty_mesh* mesh;
+    ty_error error = {0};
+    if (ty_shape_create(&def, &mesh, &error) != TY_OK)
+        abort();
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+    {
+        ty_vec3 n = ty_normalize(mesh->positions[i]);
+        float sum = 0.0f, weight = 0.12f, scale = 2.0f;
+        for (int k = 0; k < 4; k++, weight *= 0.5f, scale *= 2.1f)
+            sum += weight * ty_value_noise(ty_mul(n, scale), (uint32_t)k);
+        mesh->positions[i] = ty_mul(n, radius * (1.0f + sum));
+    }
+    host_write(path, mesh);
 }

@@ -2,7 +2,7 @@
 // The net of centre lines: nothing asked for is missing, nothing kinks or goes into the host, small changes stay small.
 #include "base/cmocka_all.h"
 #include "roots.h"
-#include "roots_net_hosts.h"
+#include "roots_hosts.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -173,9 +173,9 @@ static ty_roots_recipe recipe_for(int host)
 static int hosts_make(void** state)
 {
     (void)state;
-    host_implicit("net_compound.ply", host_compound, (ty_vec3){0.06f, 0.115f, 0.06f}, 0.7e-3f);
-    host_implicit("net_bust.ply", host_bust, (ty_vec3){0.07f, 0.12f, 0.06f}, 0.7e-3f);
-    host_knot("net_knot.ply", 0.08f, 0.014f, 600, 48);
+    host_implicit("net_compound.ply", distance_compound, (ty_vec3){0.06f, 0.115f, 0.06f}, 0.7e-3f);
+    host_implicit("net_bust.ply", distance_bust, (ty_vec3){0.07f, 0.12f, 0.06f}, 0.7e-3f);
+    host_lying_knot("net_knot.ply", 0.08f, 0.014f, 600, 48);
     host_rough("net_rough.ply", 0.05f, 1160);
     return 0;
 }
