@@ -41,6 +41,9 @@ float roots_host_value(const roots_host* host, ty_vec3 p, ty_vec3* gradient);
 float roots_host_exact(const roots_host* host, ty_vec3 p, float reach, ty_vec3* normal);
 // p moved to a height over the host, by the field. *normal is unit, away from it.
 ty_vec3 roots_host_project(const roots_host* host, ty_vec3 p, float height, ty_vec3* normal);
+// Moves p, where it lies deeper in the host than that, up to it, by the mesh itself. True where p lies near the host.
+// Any thread.
+bool roots_host_keep(const roots_host* host, float depth, ty_vec3* p);
 // What is painted on the host where it is nearest to p, 0..1, with its gradient, 1/m (NULL is allowed); 0 farther from
 // it than a few steps, or where nothing is. Any thread.
 float roots_host_mask(const roots_host* host, roots_mask which, ty_vec3 p, ty_vec3* gradient);

@@ -242,6 +242,22 @@ float roots_host_exact(const roots_host* host, ty_vec3 p, float reach, ty_vec3* 
     return floor;
 }
 
+bool roots_host_keep(const roots_host* host, float depth, ty_vec3* p)
+{
+    float step = host->field.step;
+    ty_vec3 n;
+    if (roots_host_value(host, *p, NULL) > 2.0f * step - depth)
+        return false;
+    for (int i = 0; i < 6; i++) // between two surfaces one move leads under the other
+    {
+        float height = roots_host_exact(host, *p, depth + 2.0f * step, &n);
+        if (height >= -depth)
+            break;
+        *p = ty_mad(*p, n, -depth - height);
+    }
+    return true;
+}
+
 ty_vec3 roots_host_project(const roots_host* host, ty_vec3 p, float height, ty_vec3* normal)
 {
     ty_vec3 g;

@@ -8,7 +8,7 @@ ty_status roots_shape_make(const ty_roots_recipe* recipe, const roots_network* n
 {
     *out = (roots_shape){0};
     if (recipe->mesh == TY_ROOTS_TUBES)
-        return roots_tubes_make(recipe, network, 0, &out->mesh, &out->axes, error);
+        return roots_tubes_make(recipe, network, host, 0, workers, &out->mesh, &out->axes, error);
     return roots_surface(recipe, network, host, workers, &out->skin, &out->mesh, error);
 }
 
@@ -61,9 +61,10 @@ ty_status roots_levels_make(const roots_result* result, const ty_mesh_sink* sink
     {
         ty_mesh* mesh;
         double start = ty_time_now();
-        status = result->recipe->mesh == TY_ROOTS_TUBES
-                     ? roots_tubes_make(result->recipe, result->network, level, &mesh, NULL, error)
-                     : surface_level(result, level, workers, &mesh, error);
+        status =
+            result->recipe->mesh == TY_ROOTS_TUBES
+                ? roots_tubes_make(result->recipe, result->network, result->host, level, workers, &mesh, NULL, error)
+                : surface_level(result, level, workers, &mesh, error);
         if (status != TY_OK)
             break;
         ty_log(TY_LOG_INFO, "roots: level %d of %u triangles in %.2f s", level, mesh->triangle_count,

@@ -20,10 +20,11 @@ typedef struct roots_result
 TY_CHECKED ty_status roots_surface(const ty_roots_recipe* recipe, const roots_network* network, const roots_host* host,
                                    ty_workers* workers, roots_skin** skin, ty_mesh** out, ty_error* error);
 
-// Tubes about all lines, with all that stands at their vertices. level: 0 or coarser. axes (NULL: not wanted): as of a
-// result, the caller frees it with ty_free. On failure *out is NULL.
-TY_CHECKED ty_status roots_tubes_make(const ty_roots_recipe* recipe, const roots_network* network, int level,
-                                      ty_mesh** out, roots_point** axes, ty_error* error);
+// Tubes about all lines, with all that stands at their vertices, held against the host by our method. level: 0 or
+// coarser. axes (NULL: not wanted): as of a result, the caller frees it with ty_free. On failure *out is NULL.
+TY_CHECKED ty_status roots_tubes_make(const ty_roots_recipe* recipe, const roots_network* network,
+                                      const roots_host* host, int level, ty_workers* workers, ty_mesh** out,
+                                      roots_point** axes, ty_error* error);
 
 // The mesh of the recipe's kind.
 typedef struct roots_shape

@@ -243,18 +243,7 @@ bool roots_skin_keep(const roots_skin* skin, roots_sample sample, ty_vec3* p)
     if (!skin->host)
         return false;
     roots_point own = roots_skin_point(skin, sample);
-    float most = own.sink * own.r, step = skin->host->field.step;
-    ty_vec3 n;
-    if (roots_host_value(skin->host, *p, NULL) > 2.0f * step - most)
-        return false;
-    for (int i = 0; i < 6; i++) // between two surfaces one move leads under the other
-    {
-        float height = roots_host_exact(skin->host, *p, most + 2.0f * step, &n);
-        if (height >= -most)
-            break;
-        *p = ty_mad(*p, n, -most - height);
-    }
-    return true;
+    return roots_host_keep(skin->host, own.sink * own.r, p);
 }
 
 // --- what stands there ---

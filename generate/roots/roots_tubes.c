@@ -201,8 +201,27 @@ static tubes_def def_make(const ty_roots_recipe* recipe, const roots_network* ne
     return def;
 }
 
-ty_status roots_tubes_make(const ty_roots_recipe* recipe, const roots_network* network, int level, ty_mesh** out,
-                           roots_point** axes, ty_error* error)
+// Of ours; the thesis' roots lie as they lie.
+typedef struct holding
+{
+    const roots_host* host;
+    tubes* tubes;
+} holding;
+
+static void corners_keep(void* context, int64_t begin, int64_t end, int worker)
+{
+    const holding* h = context;
+    (void)worker;
+    for (int64_t v = begin; v < end; v++)
+    {
+        corner* c = &h->tubes->corners[v];
+        if (h->tubes->def.network->lines[c->line].kind != ROOTS_TRUNK) // stands in it
+            roots_host_keep(h->host, c->axis.sink * c->axis.r, &c->p);
+    }
+}
+
+ty_status roots_tubes_make(const ty_roots_recipe* recipe, const roots_network* network, const roots_host* host,
+                           int level, ty_workers* workers, ty_mesh** out, roots_point** axes, ty_error* error)
 {
     int most = 2;
     tubes t = {.def = def_make(recipe, network, level)};
@@ -213,6 +232,8 @@ ty_status roots_tubes_make(const ty_roots_recipe* recipe, const roots_network* n
     t.failed = !rings;
     for (int l = 0; l < network->line_count && !t.failed; l++)
         tube_add(&t, l, rings);
+    if (recipe->method != TY_ROOTS_SEED && !t.failed)
+        ty_parallel_all(workers, (int64_t)t.count, 256, corners_keep, &(holding){host, &t});
     bool fits = !t.failed && t.count < UINT32_MAX && t.triangle_count < UINT32_MAX;
     if (fits && t.triangle_count > 0)
         *out = ty_mesh_create((uint32_t)t.count, (uint32_t)t.triangle_count);

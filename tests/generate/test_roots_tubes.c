@@ -142,6 +142,31 @@ static void strips_are_not_stretched(void** state)
     ty_mesh_destroy(mesh);
 }
 
+// --- the host ---
+
+// Of our method, but for the trunk, which stands in it; the box and its floor as formulas.
+static void they_go_no_deeper_than_sink(void** state)
+{
+    (void)state;
+    ty_roots_recipe recipe = recipe_for(TY_ROOTS_WRAP);
+    ty_vec3 half = recipe.host.shape.size;
+    ty_mesh* mesh = make(&recipe);
+    const float *radius = attribute(mesh, "radius"), *sink = attribute(mesh, "sink"), *root = attribute(mesh, "root");
+    int sunk = 0;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+    {
+        ty_vec3 p = mesh->positions[v], q = {fabsf(p.x) - half.x, fabsf(p.y) - half.y, fabsf(p.z) - half.z};
+        float inside = ty_min(ty_max(q.x, ty_max(q.y, q.z)), 0.0f);
+        float height = ty_min(inside + ty_length(ty_max3(q, (ty_vec3){0.0f, 0.0f, 0.0f})), p.y + half.y);
+        if (root[v] == 0.0f)
+            continue;
+        assert_true(-height <= (sink[v] + 0.05f) * radius[v]);
+        sunk += height < -0.1f * radius[v];
+    }
+    assert_true(sunk > 100);
+    ty_mesh_destroy(mesh);
+}
+
 // --- files, growth ---
 
 static void files_hold_all_that_stands_at_vertices(void** state)
@@ -295,6 +320,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_tube_is_closed),
         cmocka_unit_test(strips_are_not_stretched),
+        cmocka_unit_test(they_go_no_deeper_than_sink),
         cmocka_unit_test(files_hold_all_that_stands_at_vertices),
         cmocka_unit_test(tubes_grow_and_come_from_files),
         cmocka_unit_test(odd_sections_are_refused),
