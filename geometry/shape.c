@@ -37,8 +37,8 @@ static void set_default(void* def)
     *(ty_shape_def*)def = ty_shape_def_default();
 }
 
-static const char* const kinds[] = {"sphere", "ellipsoid", "box",   "cylinder", "torus", "plane", "disc",
-                                    "bowl",   "dome",      "sweep", "stone",    "lathe", "tube",  NULL};
+static const char* const kinds[] = {"sphere", "ellipsoid", "box",   "cylinder", "torus", "plane", "disc", "bowl",
+                                    "dome",   "sweep",     "stone", "lathe",    "block", "tube",  NULL};
 
 #define LENGTH(field, help)                                                                                            \
     {                                                                                                                  \
@@ -66,7 +66,7 @@ static const ty_param rows[] = {
     {"shape", TY_PARAM_ENUM, "", 0, 0, kinds, NULL, offsetof(ty_shape_def, kind), "which shape", true},
     LENGTH(radius, "sphere, cylinder, disc, dome, tube; torus: to the tube's centre; bowl: outside of the rim"),
     {"size", TY_PARAM_FLOAT3, "m", 0, 1e4, NULL, NULL, offsetof(ty_shape_def, size),
-     "ellipsoid, stone: semi-axes; box, plane: half extents; sweep: half width, wall height, half depth", false},
+     "ellipsoid, stone: semi-axes; box, block, plane: half extents; sweep: half width, wall height, half depth", false},
     LENGTH(height, "cylinder, bowl, dome; 0 = the radius"),
     LENGTH(tube, "torus: radius of the tube"),
     LENGTH(thickness, "bowl: of the wall; 0 = .05 of the radius, at most .1 of the height"),
@@ -76,8 +76,9 @@ static const ty_param rows[] = {
      "bowl profile: 1 = cone, 2 = parabola, higher = fuller", false},
     LENGTH(rounding, "box, cylinder: radius of the edges; sweep: of the bend"),
     {"relief", TY_PARAM_FLOAT, "", 0, 0.5, NULL, NULL, offsetof(ty_shape_def, relief),
-     "stone: faces and bumps against its size; 0 = an ellipsoid", false},
-    {"variant", TY_PARAM_INT, "", 0, 1000000, NULL, NULL, offsetof(ty_shape_def, variant), "stone: which one", false},
+     "stone: faces and bumps against its size, 0 = an ellipsoid; block: bumps and worn edges", false},
+    {"variant", TY_PARAM_INT, "", 0, 1000000, NULL, NULL, offsetof(ty_shape_def, variant), "stone, block: which one",
+     false},
     {"profile", TY_PARAM_LIST, "", 0, 0, NULL, &point_table, offsetof(ty_shape_def, profile),
      "lathe: points turned about y; closed from axis to axis, or when it ends where it began", false},
     {"points", TY_PARAM_POINTS, "m", -1e4, 1e4, NULL, NULL, offsetof(ty_shape_def, points),
@@ -155,6 +156,7 @@ static ty_status check_extents(const ty_shape_def* def, ty_error* error)
     {
     case TY_SHAPE_ELLIPSOID:
     case TY_SHAPE_STONE:
+    case TY_SHAPE_BLOCK:
         return check_size(def, true, true, true, error);
     case TY_SHAPE_BOX:
         status = check_size(def, true, true, true, error);
@@ -192,7 +194,8 @@ static ty_status check_def(const ty_shape_def* def, ty_error* error)
     if (def->divisions < 8 || def->divisions > 4096)
         return ty_error_set(error, TY_BAD_INPUT, "divisions: %d: must be within 8 .. 4096", def->divisions);
     bool has_radius = def->kind != TY_SHAPE_ELLIPSOID && def->kind != TY_SHAPE_BOX && def->kind != TY_SHAPE_PLANE &&
-                      def->kind != TY_SHAPE_SWEEP && def->kind != TY_SHAPE_STONE && def->kind != TY_SHAPE_LATHE;
+                      def->kind != TY_SHAPE_SWEEP && def->kind != TY_SHAPE_STONE && def->kind != TY_SHAPE_LATHE &&
+                      def->kind != TY_SHAPE_BLOCK;
     ty_status status = has_radius ? check_length("radius", def->radius, error) : TY_OK;
     return status == TY_OK ? check_extents(def, error) : status;
 }
@@ -212,6 +215,7 @@ static void build_kind(ty_shape_build* build, const ty_shape_def* def)
     case TY_SHAPE_SPHERE:
     case TY_SHAPE_ELLIPSOID:
     case TY_SHAPE_STONE:
+    case TY_SHAPE_BLOCK:
         ty_shape_build_ball(build, def->divisions);
         break;
     case TY_SHAPE_BOX:
@@ -261,5 +265,7 @@ ty_status ty_shape_create(const ty_shape_def* given, ty_mesh** out, ty_error* er
         stretch_ball(def, *out);
     if (status == TY_OK && def->kind == TY_SHAPE_STONE)
         ty_shape_bend_stone(def, *out);
+    if (status == TY_OK && def->kind == TY_SHAPE_BLOCK)
+        ty_shape_bend_block(def, *out);
     return status;
 }

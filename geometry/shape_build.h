@@ -80,6 +80,7 @@ void ty_shape_turn(ty_shape_build* build, const ty_profile* profile, int divisio
 
 void ty_shape_build_ball(ty_shape_build* build, int divisions);   // unit sphere
 void ty_shape_bend_stone(const ty_shape_def* def, ty_mesh* mesh); // the finished unit sphere
+void ty_shape_bend_block(const ty_shape_def* def, ty_mesh* mesh);
 void ty_shape_build_box(ty_shape_build* build, const ty_shape_def* def);
 void ty_shape_build_plane(ty_shape_build* build, const ty_shape_def* def);
 void ty_shape_build_sweep(ty_shape_build* build, const ty_shape_def* def);

@@ -77,6 +77,7 @@ float ty_shape_interior_distance(const ty_shape_def* given, ty_vec3 p)
     case TY_SHAPE_PLANE:
     case TY_SHAPE_DISC:
     case TY_SHAPE_STONE:
+    case TY_SHAPE_BLOCK:
     case TY_SHAPE_LATHE:
     case TY_SHAPE_TUBE:
     case TY_SHAPE_SWEEP:

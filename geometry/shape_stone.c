@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A weathered stone: a ball cut by planes that run into one another, with relief at four scales.
+// Weathered stones: a ball cut by planes that run into one another, and a hewn block, with relief at four scales.
 #include "shape_build.h"
 #include <tsuya/base/noise.h>
 #include <tsuya/base/rng.h>
@@ -48,6 +48,13 @@ static float radius_at(const cut cuts[PLANES], ty_vec3 d, float relief, uint32_t
     return ty_lerp(1.0f, faceted, share) * (1.0f + 0.6f * relief * bumps);
 }
 
+static void finish(ty_mesh* mesh)
+{
+    ty_mesh_compute_bounds(mesh);
+    ty_mesh_compute_normals(mesh, TY_PI);
+    ty_mesh_compute_curvature(mesh, 1);
+}
+
 void ty_shape_bend_stone(const ty_shape_def* def, ty_mesh* mesh)
 {
     cut cuts[PLANES];
@@ -58,7 +65,33 @@ void ty_shape_bend_stone(const ty_shape_def* def, ty_mesh* mesh)
         ty_vec3 d = mesh->positions[v];
         mesh->positions[v] = ty_mul3(ty_mul(d, radius_at(cuts, d, def->relief, seed)), def->size);
     }
-    ty_mesh_compute_bounds(mesh);
-    ty_mesh_compute_normals(mesh, TY_PI);
-    ty_mesh_compute_curvature(mesh, 1);
+    finish(mesh);
+}
+
+// --- a hewn block ---
+
+// The ball of the norm |x|^p + |y|^p + |z|^p, which is a cube with round edges, the rounder the less p is.
+static float cube_radius(ty_vec3 d, float p)
+{
+    float most = ty_max(fabsf(d.x), ty_max(fabsf(d.y), fabsf(d.z)));
+    ty_vec3 q = ty_mul(d, 1.0f / most);
+    return 1.0f / (most * ty_pow(ty_pow(fabsf(q.x), p) + ty_pow(fabsf(q.y), p) + ty_pow(fabsf(q.z), p), 1.0f / p));
+}
+
+void ty_shape_bend_block(const ty_shape_def* def, ty_mesh* mesh)
+{
+    uint32_t seed = (uint32_t)def->variant + 77u;
+    float least = ty_min(def->size.x, ty_min(def->size.y, def->size.z));
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+    {
+        ty_vec3 d = mesh->positions[v];
+        // Some edges are worn more than others.
+        float worn = ty_clamp(0.4f + 1.2f * ty_value_noise(ty_mul(d, 2.3f), seed + 9u), 0.0f, 1.0f);
+        float p = ty_lerp(40.0f, 7.0f, worn * ty_min(def->relief / 0.1f, 1.0f)), bumps = 0.0f, size = 1.0f;
+        ty_vec3 at = ty_mul3(ty_mul(d, cube_radius(d, p)), def->size);
+        for (uint32_t octave = 0; octave < 4; octave++, size *= 2.3f)
+            bumps += ty_value_noise(ty_mul(at, 1.1f * size / least), seed + octave) / size;
+        mesh->positions[v] = ty_mad(at, d, 0.35f * def->relief * least * bumps);
+    }
+    finish(mesh);
 }

@@ -5,8 +5,8 @@
 #include <string.h>
 #include <tsuya/geometry/mesh_file.h>
 
-static const ty_shape_kind shapes[] = {TY_SHAPE_SPHERE, TY_SHAPE_ELLIPSOID, TY_SHAPE_BOX, TY_SHAPE_CYLINDER,
-                                       TY_SHAPE_STONE};
+static const ty_shape_kind shapes[] = {TY_SHAPE_SPHERE,   TY_SHAPE_ELLIPSOID, TY_SHAPE_BOX,
+                                       TY_SHAPE_CYLINDER, TY_SHAPE_STONE,     TY_SHAPE_BLOCK};
 
 enum
 {

@@ -53,18 +53,18 @@ ty_roots_recipe ty_roots_recipe_default(void)
 
 // --- shapes ---
 
-static const char* const host_kinds[] = {"sphere", "ellipsoid", "box", "cylinder", "stone", "mesh", NULL};
+static const char* const host_kinds[] = {"sphere", "ellipsoid", "box", "cylinder", "stone", "block", "mesh", NULL};
 
 #define SHAPE_ROWS                                                                                                     \
     {"shape", TY_PARAM_ENUM, "", 0, 0, host_kinds, NULL, offsetof(OWNER, kind), "what it is", false},                  \
         FIELD("mesh", TY_PARAM_PATH, "", 0, 0, mesh, "a mesh, with shape mesh; it may be open, and hold instances"),   \
         FIELD("radius", TY_PARAM_FLOAT, "m", 0, 1e4, shape.radius, "of sphere and cylinder"),                          \
         FIELD("size", TY_PARAM_FLOAT3, "m", 0, 1e4, shape.size,                                                        \
-              "semi-axes of ellipsoid and stone, half extents of the box"),                                            \
+              "semi-axes of ellipsoid and stone, half extents of box and block"),                                      \
         FIELD("height", TY_PARAM_FLOAT, "m", 0, 1e4, shape.height, "of the cylinder"),                                 \
         FIELD("rounding", TY_PARAM_FLOAT, "m", 0, 1e4, shape.rounding, "edges of box and cylinder"),                   \
-        FIELD("relief", TY_PARAM_FLOAT, "", 0, 0.5, shape.relief, "of the stone"),                                     \
-        FIELD("variant", TY_PARAM_INT, "", 0, 1000000, shape.variant, "which stone"),                                  \
+        FIELD("relief", TY_PARAM_FLOAT, "", 0, 0.5, shape.relief, "of stone and block"),                               \
+        FIELD("variant", TY_PARAM_INT, "", 0, 1000000, shape.variant, "which stone or block"),                         \
         FIELD("divisions", TY_PARAM_INT, "", 8, 4096, shape.divisions, "segments around; roots feel facets")
 
 // The table of a part of the recipe, whose defaults are the recipe's.

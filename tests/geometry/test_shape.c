@@ -210,6 +210,33 @@ static void test_stones_are_closed_and_unlike(void** state)
     ty_mesh_destroy(plain);
 }
 
+// Within its size but for the relief, nearly all of the box it is hewn from, and another by its variant.
+static void test_blocks_are_hewn(void** state)
+{
+    (void)state;
+    ty_shape_def def = shape_of(TY_SHAPE_BLOCK);
+    def.size = (ty_vec3){0.1f, 0.05f, 0.08f};
+    def.divisions = 96;
+    for (int i = 0; i < 3; i++)
+    {
+        def.relief = 0.15f * (float)i;
+        ty_mesh* block = make(&def);
+        ty_mesh_topology topology;
+        ty_mesh_analyse(block, &topology);
+        double box = 8.0 * 0.1 * 0.05 * 0.08, out = 0.05 * (double)def.relief;
+        assert_true(topology.closed && topology.components == 1);
+        assert_true(topology.volume > (i == 0 ? 0.97 : 0.8) * box && topology.volume < 1.02 * box);
+        assert_true((double)block->bounds.high.x < 0.1 + out + 1e-6 &&
+                    (double)block->bounds.low.y > -0.05 - out - 1e-6);
+        def.variant++;
+        ty_mesh* other = make(&def);
+        bool same = memcmp(block->positions, other->positions, block->vertex_count * sizeof(ty_vec3)) == 0;
+        assert_true(i == 0 || !same);
+        ty_mesh_destroy(block);
+        ty_mesh_destroy(other);
+    }
+}
+
 // The bowl's own formula against the estimate from its normals, where the wall is smooth on both sides.
 static void test_bowl_curvature_agrees_with_the_estimate(void** state)
 {
@@ -809,6 +836,7 @@ int main(void)
         cmocka_unit_test(test_area_and_volume_converge_to_the_formula),
         cmocka_unit_test(test_curvature_is_exact_where_there_is_a_formula),
         cmocka_unit_test(test_stones_are_closed_and_unlike),
+        cmocka_unit_test(test_blocks_are_hewn),
         cmocka_unit_test(test_bowl_curvature_agrees_with_the_estimate),
         cmocka_unit_test(test_flat_parts_are_flat),
         cmocka_unit_test(test_borders_of_round_parts),

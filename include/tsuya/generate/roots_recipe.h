@@ -12,6 +12,7 @@ typedef enum ty_roots_host_kind
     TY_ROOTS_HOST_BOX,
     TY_ROOTS_HOST_CYLINDER,
     TY_ROOTS_HOST_STONE,
+    TY_ROOTS_HOST_BLOCK,
     TY_ROOTS_HOST_MESH, // any mesh with normals, open ones too
 } ty_roots_host_kind;
 

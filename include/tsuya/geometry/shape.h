@@ -18,6 +18,7 @@ typedef enum ty_shape_kind
     TY_SHAPE_SWEEP,     // size: a floor that curves up into a wall behind (photographer's sweep); open
     TY_SHAPE_STONE,     // size = semi-axes, relief, variant: a weathered stone
     TY_SHAPE_LATHE,     // profile: a solid turned about y, or a surface where the profile is open
+    TY_SHAPE_BLOCK,     // size = half extents, relief, variant: a hewn stone with worn edges
     TY_SHAPE_TUBE,      // radius, points: a round tube with round ends along a smooth curve through points
 } ty_shape_kind;
 
@@ -40,7 +41,7 @@ typedef struct ty_shape_def
     float foot_height;     // m
     float curve;           // bowl profile: 1 = cone, 2 = parabola, higher = fuller
     float rounding;        // m
-    float relief;          // of a stone, against its size, 0..0.5
+    float relief;          // of a stone or block, against its size, 0..0.5
     int variant;           // which stone
     ty_param_list profile; // of ty_shape_point, borrowed: from the axis to the axis, or back to the first, it is closed
     ty_param_list points;  // of ty_vec3, m, borrowed
@@ -53,14 +54,14 @@ ty_shape_def ty_shape_def_default(void);
 ty_shape_def ty_shape_def_complete(const ty_shape_def* def);
 const ty_param_table* ty_shape_params(void);
 
-// Welds, normals, uv, bounds and curvature (by the shape's formula; of a stone as measured) are filled in. Where
+// Welds, normals, uv, bounds and curvature (by the shape's formula; of stones and blocks as measured) are filled in. Where
 // curvature jumps, the border has that of the flatter side. divisions is the number of segments around the equator,
 // rounded up to a multiple of 8 for spheres, ellipsoids and round boxes: a sphere has 0.75 divisions^2 triangles.
 // Impossible sizes are TY_BAD_INPUT naming the field.
 TY_CHECKED ty_status ty_shape_create(const ty_shape_def* def, ty_mesh** out, ty_error* error);
 
 // Signed distance (negative inside) to the *interior* of a vessel: the space to be filled. For BOWL the hollow below
-// the rim; for the closed solids the solid itself; open shapes, stones, lathes and tubes have none: TY_FLOAT_MAX. Exact
+// the rim; for the closed solids the solid itself; open shapes, stones, blocks, lathes and tubes have none: TY_FLOAT_MAX. Exact
 // or a lower bound of the distance inside, 1-Lipschitz. A bowl has no wall above its rim: there the distance is to the
 // lip, negative within the rim's radius and positive beyond, and jumps between. def must be one that ty_shape_create
 // accepts. Any thread.
