@@ -55,7 +55,15 @@ bool growth_link(growth* g, const ty_roots_link_def* link, roots_kind from, root
 // Fine roots over what is left, by the recipe's `cover`. false: cancelled.
 bool growth_cover(growth* g);
 
+// Where an overhanging side of the host comes down to the floor: p moved out along that until there is room for the
+// height between both; elsewhere p.
+ty_vec3 growth_out(const roots_host* host, ty_vec3 p, float height);
+
 // --- shrink-wrap ---
+
+// One round, forwards and back, of relaxing a spline in tension that bends over about `stiff` points. Two points at
+// either end stay where they are.
+void roots_bend(ty_vec3* p, int count, float stiff);
 
 enum
 {

@@ -33,8 +33,8 @@ ty_roots_recipe ty_roots_recipe_default(void)
                    .avoid = 1.0f,
                    .attract = 1.0f,
                    .clear = 1.5f},
-        .first = {.spacing = 0.02f, .reach = 0.05f, .slant = 1.2f, .share = {0.4f, 0.75f}, .wander = 0.12f},
-        .second = {.spacing = 0.03f, .reach = 0.04f, .slant = 0.8f, .share = {0.5f, 0.8f}, .wander = 0.1f},
+        .first = {.spacing = 0.02f, .reach = 0.05f, .slant = 1.5f, .share = {0.4f, 0.75f}, .wander = 0.12f},
+        .second = {.spacing = 0.03f, .reach = 0.04f, .slant = 1.4f, .share = {0.5f, 0.8f}, .wander = 0.1f},
         .aerial = {.count = 0, .share = {0.3f, 0.5f}},
         .cover = {.spacing = 0.0f, .radius = 0.8e-3f},
         .exponent = 2.3f,
@@ -197,7 +197,7 @@ PART(growth_table, growth, "roots.growth", "How a tip finds its way.", growth_ro
 static const ty_param link_rows[] = {
     FIELD("spacing", TY_PARAM_FLOAT, "mm", 0, 1e6, spacing, "mean length of the parent between them; 0 = none"),
     FIELD("reach", TY_PARAM_FLOAT, "mm", 0, 1e6, reach, "how far a partner may be"),
-    FIELD("slant", TY_PARAM_FLOAT, "", -2, 2, slant, "how much farther down they end, of the way across"),
+    FIELD("slant", TY_PARAM_FLOAT, "", 0, 4, slant, "how much farther down they end, of the way across"),
     FIELD("share", TY_PARAM_FLOAT2, "", 0.1, 0.95, share, "radius against the thinner of both: from, to"),
     FIELD("wander", TY_PARAM_FLOAT, "", 0, 1, wander, "how far they swing to the side, of the way across"),
 };
@@ -312,7 +312,7 @@ static int frame_count(const void* def)
 
 const ty_generator ty_roots_generator = {
     .kind = "roots",
-    .build_id = "roots 7",
+    .build_id = "roots 8",
     .product = TY_PRODUCT_MESH,
     .params = &recipe_table,
     .frame_count = frame_count,

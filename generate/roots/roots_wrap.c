@@ -12,8 +12,11 @@ enum
     SMOOTH = 10,  // rounds at full resolution
 };
 
-#define MOST_WAY 2.6f // length against the chord
-#define LIFT 0.6f     // of the chord
+#define MOST_WAY 2.6f  // length against the chord
+#define LOW_LIFT 0.1f  // of it, where other parts of the host are near
+#define LIFT 0.6f      // of the chord
+#define STIFF 4.0f     // points over which it bends while it is drawn tight
+#define STIFF_WAY 0.1f // the same at full resolution, of all points
 
 // Points at equal ways along the curve.
 static void resample(const ty_vec3* from, int count, ty_vec3* to, int wanted)
@@ -41,19 +44,6 @@ static void evened(ty_vec3* p, int count)
     memcpy(p, even, (size_t)count * sizeof(ty_vec3));
 }
 
-// Towards the middle of the neighbours; less near the ends, over `stiff` points, so that their directions stay.
-static void smooth(ty_vec3* p, int count, float part, float stiff)
-{
-    ty_vec3 last = p[0];
-    for (int i = 1; i + 1 < count; i++)
-    {
-        ty_vec3 own = p[i], middle = ty_mul(ty_add(last, p[i + 1]), 0.5f);
-        float end = (float)(i < count - 1 - i ? i : count - 1 - i);
-        p[i] = ty_lerp3(own, middle, part * ty_min(1.0f, end / stiff));
-        last = own;
-    }
-}
-
 static float length_of(const ty_vec3* p, int count)
 {
     float sum = 0.0f;
@@ -71,41 +61,46 @@ static float height_at(const wrap_def* def, float t, float length)
     return ty_lerp(b, ty_lerp(a, own, from_a), from_b);
 }
 
-static void project(const growth* g, const wrap_def* def, wrap* w, float lift)
+// Points to their heights; those that are higher stay where it bridges.
+static void project(const growth* g, const wrap_def* def, wrap* w, float lift, bool bridges)
 {
     float length = length_of(w->p, w->count);
     for (int i = 1; i + 1 < w->count; i++)
     {
         float t = (float)i / (float)(w->count - 1), end = ty_min(1.0f, 4.0f * ty_min(t, 1.0f - t));
-        w->p[i] = roots_host_project(g->host, w->p[i], height_at(def, t, length) + lift * end, &w->n[i]);
+        float height = height_at(def, t, length) + lift * end;
+        ty_vec3 n;
+        if (bridges && roots_host_value(g->host, w->p[i], &n) > height)
+        {
+            w->n[i] = ty_normalize(n);
+            continue;
+        }
+        w->p[i] = roots_host_project(g->host, growth_out(g->host, w->p[i], height), height, &w->n[i]);
     }
 }
 
-static void begin(const wrap_def* def, wrap* w, float lift)
+// A cubic along both roots at its ends, lifted in its middle.
+static void begin(const wrap_def* def, wrap* w, float lift, float chord)
 {
-    ty_vec3 a = def->a.p, b = def->b.p;
     w->count = COARSE;
     for (int i = 0; i < COARSE; i++)
     {
-        float t = (float)i / (COARSE - 1);
+        float t = (float)i / (COARSE - 1), t2 = t * t, t3 = t2 * t;
         ty_vec3 n = ty_lerp3(def->a.n, def->b.n, t);
         n = ty_length(n) > 1e-3f ? ty_normalize(n) : def->a.n;
-        w->p[i] = ty_mad(ty_lerp3(a, b, t), n, lift * 4.0f * t * (1.0f - t));
+        ty_vec3 p = ty_lerp3(def->a.p, def->b.p, 3.0f * t2 - 2.0f * t3);
+        p = ty_mad(p, def->ta, chord * (t3 - 2.0f * t2 + t));
+        p = ty_mad(p, def->tb, chord * (t3 - t2));
+        w->p[i] = ty_mad(p, n, lift * 4.0f * t * (1.0f - t));
     }
 }
 
-// Leaves along the root it comes from and arrives along the one it goes to: near the ends, over some radii, it is
-// pulled that way.
-static void ends_bend(const wrap_def* def, wrap* w, float length, float radii, float pull)
+// Its first and last steps are along the roots that it joins.
+static void clamp_ends(const wrap_def* def, wrap* w)
 {
-    float reach_a = ty_min(radii * def->a.r, 0.3f * length), reach_b = ty_min(radii * def->b.r, 0.3f * length);
-    for (int i = 1; i + 1 < w->count; i++)
-    {
-        float t = (float)i / (float)(w->count - 1);
-        float x = t * length / reach_a, y = (1.0f - t) * length / reach_b;
-        w->p[i] = ty_mad(w->p[i], def->ta, pull * reach_a * x * ty_exp(1.0f - x - 0.5f * x * x));
-        w->p[i] = ty_mad(w->p[i], def->tb, -pull * reach_b * y * ty_exp(1.0f - y - 0.5f * y * y));
-    }
+    int last = w->count - 1;
+    w->p[1] = ty_mad(def->a.p, def->ta, ty_length(ty_sub(w->p[1], def->a.p)));
+    w->p[last - 1] = ty_mad(def->b.p, def->tb, -ty_length(ty_sub(w->p[last - 1], def->b.p)));
 }
 
 // To the sides, by chance that is a function of the way.
@@ -115,7 +110,7 @@ static void swing(const wrap_def* def, wrap* w, float length)
     memcpy(was, w->p, (size_t)w->count * sizeof(ty_vec3));
     for (int i = 1; i + 1 < w->count; i++)
     {
-        float t = (float)i / (float)(w->count - 1), wide = 4.0f * t * (1.0f - t);
+        float t = (float)i / (float)(w->count - 1), wide = 16.0f * ty_sqr(t * (1.0f - t));
         ty_vec3 along = ty_normalize(ty_sub(was[i + 1], was[i - 1])), side = ty_cross(w->n[i], along);
         float x = 2.5f * t, noise = ty_value_noise(ty_vec3_make(x, 0.5f, 0.5f), (uint32_t)def->key);
         noise += 0.4f * ty_value_noise(ty_vec3_make(2.6f * x, 0.5f, 0.5f), (uint32_t)def->key + 1u);
@@ -135,6 +130,15 @@ static float sharpest(const wrap* w)
     return turn;
 }
 
+// Between the underside of a host and the floor that it stands on.
+static bool is_under(const growth* g, ty_vec3 p, float r, float most)
+{
+    ty_vec3 n;
+    if (!g->host->has_floor || p.y > g->host->floor + 2.0f * r)
+        return false;
+    return roots_host_value(g->host, p, &n) < most && n.y < -0.3f * ty_length(n);
+}
+
 static bool lies_well(const growth* g, const wrap_def* def, const wrap* w)
 {
     for (int i = 1; i + 1 < w->count; i++)
@@ -143,7 +147,10 @@ static bool lies_well(const growth* g, const wrap_def* def, const wrap* w)
         float over = roots_host_value(g->host, w->p[i], NULL) - height, most = 0.5f * (def->r + g->host->field.step);
         if (roots_host_clear(g->host, w->p[i], NULL) < g->recipe->growth.clear * def->r)
             return false;
-        if (over < -most || over > 3.0f * most) // in corners it hangs over; it comes to rest later
+        if (is_under(g, w->p[i], def->r, def->strict ? def->r : 0.0f))
+            return false;
+        if (over < -most ||
+            over > (def->strict ? 3.0f : 9.0f) * most) // in corners it hangs over; it comes to rest later
             return false;
     }
     return true;
@@ -159,36 +166,20 @@ static void refine(const wrap_def* def, wrap* w)
     w->count = wanted;
 }
 
-static bool tighten(const growth* g, const wrap_def* def, wrap* w, float chord)
+static bool tighten(const growth* g, const wrap_def* def, wrap* w, float chord, float lift)
 {
-    float lift = LIFT * chord;
-    begin(def, w, lift);
+    lift *= chord;
+    begin(def, w, lift, chord);
     for (int i = 0; i <= TIGHTEN; i++)
     {
         float left = ty_sqr(1.0f - (float)i / TIGHTEN);
-        smooth(w->p, w->count, 0.7f, 1.0f);
-        smooth(w->p, w->count, 0.7f, 1.0f);
-        project(g, def, w, lift * left);
+        clamp_ends(def, w);
+        roots_bend(w->p, w->count, STIFF);
+        project(g, def, w, lift * left, false);
         if (i % 4 == 3)
             evened(w->p, w->count);
     }
     return length_of(w->p, w->count) <= MOST_WAY * chord;
-}
-
-// Gives the ends the directions that smoothing has taken from them, as far as there is room for it.
-static void ends_align(const growth* g, const wrap_def* def, wrap* w)
-{
-    ty_vec3 was[WRAP_MOST];
-    float pull = 1.0f;
-    memcpy(was, w->p, (size_t)w->count * sizeof(ty_vec3));
-    for (int i = 0; i < 4; i++, pull *= 0.7f)
-    {
-        memcpy(w->p, was, (size_t)w->count * sizeof(ty_vec3));
-        ends_bend(def, w, w->length, 2.5f, pull);
-        project(g, def, w, 0.0f);
-        if (sharpest(w) > 0.6f)
-            break;
-    }
 }
 
 static float end_dot(const wrap* w, int from, int to, ty_vec3 t)
@@ -200,22 +191,23 @@ static float end_dot(const wrap* w, int from, int to, ty_vec3 t)
 static bool finish(const growth* g, const wrap_def* def, wrap* w, float swung, float longest)
 {
     float length = length_of(w->p, w->count);
+    bool bridges = !def->strict && swung < 1.0f; // rather than not at all
     refine(def, w);
-    project(g, def, w, 0.0f);
+    project(g, def, w, 0.0f, false);
     if (swung > 0.0f)
         swing(def, w, swung * length);
-    ends_bend(def, w, length, 5.0f, 0.45f);
+    float stiff = ty_max(2.0f, STIFF_WAY * (float)w->count);
     for (int i = 0; i < 5 * SMOOTH; i++)
     {
-        smooth(w->p, w->count, 0.5f, 6.0f);
-        project(g, def, w, 0.0f);
+        clamp_ends(def, w);
+        roots_bend(w->p, w->count, stiff);
+        project(g, def, w, 0.0f, bridges);
         if (i % 4 == 3)
             evened(w->p, w->count);
         w->length = length_of(w->p, w->count);
         if (i >= SMOOTH && sharpest(w) > 0.5f && lies_well(g, def, w))
             break;
     }
-    ends_align(g, def, w);
     w->length = length_of(w->p, w->count);
     w->n[0] = def->a.n;
     w->n[w->count - 1] = def->b.n;
@@ -225,20 +217,39 @@ static bool finish(const growth* g, const wrap_def* def, wrap* w, float swung, f
     return w->length <= longest && sharpest(w) > 0.0f && lies_well(g, def, w); // turns are rounded off later
 }
 
-wrap_way roots_wrap(const growth* g, const wrap_def* def, wrap* w)
+// Drawn tight it may set out or arrive against the flow of what it joins; then it is better off to go that way at once.
+static bool turned(const wrap* w, wrap_def* def)
 {
-    float chord = ty_length(ty_sub(def->b.p, def->a.p)), height = (def->flat - def->sink) * def->r;
-    if (tighten(g, def, w, chord) && finish(g, def, w, 1.0f, MOST_WAY * chord))
-        return WRAP_TIGHT;
-    w->count = roots_geodesic(g->host, def->a.p, def->b.p, height, MOST_WAY * chord, w->p, WRAP_MOST);
+    int part = w->count / 5, last = w->count - 1;
+    bool a = ty_dot(ty_sub(w->p[part], w->p[0]), def->ta) < 0.0f;
+    bool b = ty_dot(ty_sub(w->p[last], w->p[last - part]), def->tb) < 0.0f;
+    def->ta = a ? ty_neg(def->ta) : def->ta;
+    def->tb = b ? ty_neg(def->tb) : def->tb;
+    return a || b;
+}
+
+wrap_way roots_wrap(const growth* g, const wrap_def* wanted, wrap* w)
+{
+    wrap_def def = *wanted;
+    float chord = ty_length(ty_sub(def.b.p, def.a.p)), height = (def.flat - def.sink) * def.r;
+    const float lifts[] = {LIFT, LOW_LIFT, LOW_LIFT}, swings[] = {1.0f, 1.0f, 0.0f};
+    for (int i = 0; i < 3; i++)
+    {
+        bool tight = tighten(g, &def, w, chord, lifts[i]);
+        if (turned(w, &def))
+            tight = tighten(g, &def, w, chord, lifts[i]);
+        if (tight && finish(g, &def, w, swings[i], MOST_WAY * chord))
+            return WRAP_TIGHT;
+    }
+    w->count = roots_geodesic(g->host, def.a.p, def.b.p, height, MOST_WAY * chord, w->p, WRAP_MOST);
     if (w->count < 3)
         return WRAP_NONE;
     for (int i = 0; i < SMOOTH; i++)
     {
         evened(w->p, w->count);
-        smooth(w->p, w->count, 0.7f, 1.0f);
-        smooth(w->p, w->count, 0.7f, 1.0f);
-        project(g, def, w, 0.0f);
+        roots_bend(w->p, w->count, 1.0f);
+        project(g, &def, w, 0.0f, false);
     }
-    return finish(g, def, w, 0.3f, MOST_WAY * chord) ? WRAP_GEODESIC : WRAP_NONE;
+    turned(w, &def);
+    return finish(g, &def, w, 0.3f, MOST_WAY * chord) ? WRAP_GEODESIC : WRAP_NONE;
 }

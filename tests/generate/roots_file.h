@@ -156,7 +156,10 @@ static bool roots_measure_hold(const ty_mesh* mesh, const roots_host_files* host
         float r = radius->values[v], height = roots_height(host, mesh->positions[v], 4.0f * r, &up) / r;
         out->deepest = fmax(out->deepest, (double)-height);
         out->deeper = fmax(out->deeper, (double)(-height - sink->values[v]));
-        if (sink->values[v] > 0.0f && height < 4.0f && ty_dot(up, ty_normalize(normals[v])) < -0.9f)
+        // of what passes between two parts of the host the side that its turns say is turned to it
+        float turn = mesh->uvs[v].x - floorf(mesh->uvs[v].x) - 0.5f;
+        if (sink->values[v] > 0.0f && height < 4.0f && fabsf(turn) > 0.25f &&
+            ty_dot(up, ty_normalize(normals[v])) < -0.9f)
             gaps[out->attached++] = fmax((double)height, 0.0);
     }
     out->gap_99 = roots_share(gaps, out->attached, 0.99);

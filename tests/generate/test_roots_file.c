@@ -59,6 +59,7 @@ static void holds(const char* name, int detail)
     assert_true(f.bend_least >= BEND_LEAST && f.bend_1 >= BEND_1);
     assert_true(f.lines > 11);
     assert_int_equal(f.parts, 1);
+    assert_int_equal(f.unseen, 0);
 }
 
 #define HOST(name)                                                                                                     \

@@ -195,7 +195,7 @@ static void all_that_is_asked_for_grows(void** state)
         assert_true(m.got == m.asked);
         assert_int_equal(m.apart, 0);
         assert_true(m.least >= 100.0f && m.low >= 120.0f);
-        assert_true(m.join_low >= 100.0f);
+        assert_true(m.join >= 100.0f && m.join_low >= 120.0f);
         assert_true(m.deep <= 0.05f);
         drop(&g);
     }
