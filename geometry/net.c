@@ -20,7 +20,8 @@ void net_pad_values(const ty_net* net, int slot, float out[NET_PAD * NET_PAD * N
             {
                 float* row = out + ((z + dz * TY_NET_BLOCK) * NET_PAD + y + dy * TY_NET_BLOCK) * NET_PAD;
                 for (int x = 0; x < nx; x++)
-                    row[x + dx * TY_NET_BLOCK] = from ? from[(z * TY_NET_BLOCK + y) * TY_NET_BLOCK + x] : net->def.step;
+                    row[x + dx * TY_NET_BLOCK] =
+                        from ? from[(z * TY_NET_BLOCK + y) * TY_NET_BLOCK + x] : net_beyond(net, other);
             }
     }
 }
@@ -79,6 +80,12 @@ static void work_add(work* w, uint32_t item)
     w->items[w->count++] = item;
 }
 
+static int32_t slot_at(const ty_net* net, const int at[3])
+{
+    bool beyond = at[0] < 0 || at[1] < 0 || at[2] < 0;
+    return beyond ? NET_OUTSIDE : net_slot(net, at[0] >> 3, at[1] >> 3, at[2] >> 3);
+}
+
 // The node as slot * TY_NET_NODES + node; false where the grid holds none.
 static bool node_find(const ty_net* net, const int at[3], uint32_t* out)
 {
@@ -86,7 +93,7 @@ static bool node_find(const ty_net* net, const int at[3], uint32_t* out)
     {
         MASK = TY_NET_BLOCK - 1
     };
-    int32_t slot = at[0] < 0 || at[1] < 0 || at[2] < 0 ? -1 : net_slot(net, at[0] >> 3, at[1] >> 3, at[2] >> 3);
+    int32_t slot = slot_at(net, at);
     if (slot < 0)
         return false;
     int node = ((at[2] & MASK) * TY_NET_BLOCK + (at[1] & MASK)) * TY_NET_BLOCK + (at[0] & MASK);
@@ -164,8 +171,9 @@ static void cell_mend(ty_net* net, work* w, uint32_t place)
     node_coordinates(net, place, at);
     for (int c = 0; c < 8; c++)
     {
-        bool held = node_find(net, (const int[3]){at[0] + (c & 1), at[1] + (c >> 1 & 1), at[2] + (c >> 2)}, &nodes[c]);
-        values[c] = held ? net->values[nodes[c]] : TY_FLOAT_MAX;
+        const int corner[3] = {at[0] + (c & 1), at[1] + (c >> 1 & 1), at[2] + (c >> 2)};
+        bool held = node_find(net, corner, &nodes[c]);
+        values[c] = held ? net->values[nodes[c]] : slot_at(net, corner) == NET_SOLID ? -1.0f : TY_FLOAT_MAX;
         inside |= (values[c] < 0.0f) << c;
     }
     int flaw = cell_flaw(inside);
@@ -248,6 +256,9 @@ static bool net_allocate(ty_net* net, const ty_net_def* def)
     memset(net->slots, 0xff, (size_t)blocks * sizeof(int32_t));
     for (int i = 0; i < def->active_count; i++)
         net->slots[active[i]] = i;
+    for (int i = 0; i < def->solid_count; i++)
+        net->slots[def->solid[i]] = NET_SOLID;
+    net->def.solid = NULL; // the caller's
     return true;
 }
 

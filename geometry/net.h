@@ -9,10 +9,16 @@ enum
     NET_WIDE = TY_NET_BLOCK + 2, // cells a side of a block and of all about it
 };
 
+enum
+{
+    NET_OUTSIDE = -1, // of blocks that are not stored
+    NET_SOLID = -2,
+};
+
 struct ty_net
 {
     ty_net_def def; // active is the net's own copy
-    int32_t* slots; // of each block, its place in active; -1 = none
+    int32_t* slots; // of each block, its place in active, or one of the below
     float* values;  // [active_count][TY_NET_NODES]
     bool* crossed;  // [active_count]: some of its cells may be
     int32_t* cells; // vertex of each cell, by its lowest node, [active_count][TY_NET_NODES]; -1 = none
@@ -23,13 +29,19 @@ struct ty_net
     int32_t (*quads)[4];      // counter-clockwise seen from outside
 };
 
-// The slot of a block, -1 beyond the grid.
+// The slot of a block, below 0 where it is not stored.
 static inline int32_t net_slot(const ty_net* net, int x, int y, int z)
 {
     const int* b = net->def.blocks;
     if (x < 0 || y < 0 || z < 0 || x >= b[0] || y >= b[1] || z >= b[2])
-        return -1;
+        return NET_OUTSIDE;
     return net->slots[((int64_t)z * b[1] + y) * b[0] + x];
+}
+
+// The field in a block that is not stored.
+static inline float net_beyond(const ty_net* net, int32_t slot)
+{
+    return slot == NET_SOLID ? -net->def.step : net->def.step;
 }
 
 static inline void net_block_of(const ty_net* net, int slot, int block[3])

@@ -32,7 +32,7 @@ static void corners_find(const ty_net* net, const int low[3], float out[8])
         int at[3] = {low[0] + (c & 1), low[1] + (c >> 1 & 1), low[2] + (c >> 2)};
         slot = net_slot(net, at[0] >> 3, at[1] >> 3, at[2] >> 3);
         int node = ((at[2] & LAST) * TY_NET_BLOCK + (at[1] & LAST)) * TY_NET_BLOCK + (at[0] & LAST);
-        out[c] = slot < 0 ? net->def.step : net->values[(size_t)slot * TY_NET_NODES + (size_t)node];
+        out[c] = slot < 0 ? net_beyond(net, slot) : net->values[(size_t)slot * TY_NET_NODES + (size_t)node];
     }
 }
 

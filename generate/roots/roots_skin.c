@@ -320,6 +320,40 @@ static ty_status surface_seat(const roots_skin* skin, ty_mesh* mesh, ty_workers*
 
 // --- all of it ---
 
+typedef struct sorting
+{
+    const roots_skin* skin;
+    uint8_t* kinds;  // roots_block, [active_count]
+    int32_t* blocks; // [active_count] those that are mixed, then those inside
+    int mixed, solid;
+} sorting;
+
+static void blocks_look(void* context, int64_t begin, int64_t end, int worker)
+{
+    const sorting* s = context;
+    (void)worker;
+    for (int64_t i = begin; i < end; i++)
+        s->kinds[i] = (uint8_t)roots_skin_block(s->skin, s->skin->active[i]);
+}
+
+// What lies inside of thick roots, or only in reach of roots that run together, is not stored.
+static bool blocks_sort(sorting* s, ty_workers* workers)
+{
+    int count = s->skin->active_count;
+    s->kinds = TY_TRY_ALLOC(uint8_t, count);
+    s->blocks = TY_TRY_ALLOC(int32_t, count);
+    if (!s->kinds || !s->blocks)
+        return false;
+    ty_parallel_all(workers, count, 256, blocks_look, s);
+    for (int i = 0; i < count; i++)
+        if (s->kinds[i] == ROOTS_BLOCK_MIXED)
+            s->blocks[s->mixed++] = s->skin->active[i];
+    for (int i = 0; i < count; i++)
+        if (s->kinds[i] == ROOTS_BLOCK_INSIDE)
+            s->blocks[s->mixed + s->solid++] = s->skin->active[i];
+    return true;
+}
+
 static ty_status surface_find(const roots_skin* skin, ty_workers* workers, ty_mesh** out, ty_net_pieces* pieces,
                               ty_error* error)
 {
@@ -327,16 +361,27 @@ static ty_status surface_find(const roots_skin* skin, ty_workers* workers, ty_me
     {
         RELAX = 8, // rounds
     };
+    sorting sorted = {skin, NULL, NULL, 0, 0};
+    if (!blocks_sort(&sorted, workers))
+    {
+        ty_free(sorted.kinds);
+        ty_free(sorted.blocks);
+        return ty_error_set(error, TY_NO_MEMORY, "no memory for a surface of %d blocks", skin->active_count);
+    }
     ty_net_def def = {.origin = skin->origin,
                       .step = skin->step,
                       .blocks = {skin->blocks[0], skin->blocks[1], skin->blocks[2]},
-                      .active = skin->active,
-                      .active_count = skin->active_count,
+                      .active = sorted.blocks,
+                      .active_count = sorted.mixed,
+                      .solid = sorted.blocks + sorted.mixed,
+                      .solid_count = sorted.solid,
                       .fill = roots_skin_fill,
                       .context = (void*)skin};
     ty_net* net;
     double start = ty_time_now();
     ty_status status = ty_net_create(&def, workers, &net, error);
+    ty_free(sorted.kinds);
+    ty_free(sorted.blocks);
     if (status != TY_OK)
         return status;
     double cut = ty_time_now();

@@ -86,4 +86,12 @@ static inline float roots_skin_top(const roots_skin* skin, float distance, float
     return roots_cut(distance, y - skin->network->top, ty_max(ROOTS_TOP_EDGE, skin->step), part);
 }
 
-void roots_skin_fill(void* skin, const int block[3], float values[TY_NET_NODES]); // a ty_net_fill
+typedef enum roots_block
+{
+    ROOTS_BLOCK_OUTSIDE,
+    ROOTS_BLOCK_MIXED, // it may have nodes within two steps of the surface
+    ROOTS_BLOCK_INSIDE,
+} roots_block;
+
+roots_block roots_skin_block(const roots_skin* skin, int number);
+void roots_skin_fill(void* skin, const int block[3], float values[TY_NET_NODES]); // a ty_net_fill; of mixed blocks

@@ -172,33 +172,57 @@ static void block_fill(const roots_skin* skin, const int block[3], int32_t begin
     top_cut(skin, &at, &all, values);
 }
 
+// What is known of a block from its segments alone.
+typedef struct block_look
+{
+    ty_vec3 middle;
+    range all;  // of the distance to the nearest root, each by itself
+    float join; // how much nearer than that the surface may be
+    roots_block kind;
+} block_look;
+
+static block_look block_look_at(const roots_skin* skin, const int block[3], int number)
+{
+    const float middle = 0.5f * (TY_NET_BLOCK - 1), half = block_half(skin);
+    ty_vec3 at = {(float)(block[0] * TY_NET_BLOCK) + middle, (float)(block[1] * TY_NET_BLOCK) + middle,
+                  (float)(block[2] * TY_NET_BLOCK) + middle};
+    block_look look = {ty_mad(skin->origin, at, skin->step), {TY_FLOAT_MAX, TY_FLOAT_MAX}, 0.0f, ROOTS_BLOCK_MIXED};
+    for (int32_t i = skin->begin[number]; i < skin->begin[number + 1]; i++)
+    {
+        const roots_segment* s = &skin->segments[skin->list[i]];
+        range one = segment_range(s, look.middle, half);
+        look.all = (range){ty_min(look.all.least, one.least), ty_min(look.all.most, one.most)};
+        look.join = ty_max(look.join, skin->recipe->join * ty_max(s->ra, s->ra + s->rd));
+    }
+    float reach = 2.0f * skin->step;
+    float under = skin->host ? roots_host_value(skin->host, look.middle, NULL) : TY_FLOAT_MAX;
+    bool cut = look.middle.y + half > skin->network->top - reach || under < 1.2f * half + reach;
+    if (look.all.least > reach + look.join)
+        look.kind = ROOTS_BLOCK_OUTSIDE;
+    else if (look.all.most < -2.0f * reach && !cut)
+        look.kind = ROOTS_BLOCK_INSIDE;
+    return look;
+}
+
+static void block_of(const roots_skin* skin, int number, int block[3])
+{
+    block[0] = number % skin->blocks[0];
+    block[1] = number / skin->blocks[0] % skin->blocks[1];
+    block[2] = number / skin->blocks[0] / skin->blocks[1];
+}
+
+roots_block roots_skin_block(const roots_skin* skin, int number)
+{
+    int block[3];
+    block_of(skin, number, block);
+    return block_look_at(skin, block, number).kind;
+}
+
 void roots_skin_fill(void* context, const int block[3], float values[NODES])
 {
     const roots_skin* skin = context;
     int number = (block[2] * skin->blocks[1] + block[1]) * skin->blocks[0] + block[0];
-    int32_t begin = skin->begin[number], end = skin->begin[number + 1];
-    const float middle = 0.5f * (TY_NET_BLOCK - 1);
-    ty_vec3 at = {(float)(block[0] * TY_NET_BLOCK) + middle, (float)(block[1] * TY_NET_BLOCK) + middle,
-                  (float)(block[2] * TY_NET_BLOCK) + middle};
-    at = ty_mad(skin->origin, at, skin->step);
-    range all = {TY_FLOAT_MAX, TY_FLOAT_MAX};
-    float wide = 0.0f; // the thickest root
-    for (int32_t i = begin; i < end; i++)
-    {
-        const roots_segment* s = &skin->segments[skin->list[i]];
-        range one = segment_range(s, at, block_half(skin));
-        all = (range){ty_min(all.least, one.least), ty_min(all.most, one.most)};
-        wide = ty_max(wide, ty_max(s->ra, s->ra + s->rd));
-    }
-    float reach = 2.0f * skin->step, join = skin->recipe->join * wide;
-    float half = block_half(skin), under = skin->host ? roots_host_value(skin->host, at, NULL) : TY_FLOAT_MAX;
-    bool cut = at.y + half > skin->network->top - reach || under < 1.2f * half + 2.0f * skin->step;
-    if (all.least > reach + join || (all.most < -reach && !cut))
-    {
-        float value = all.least > 0.0f ? all.least : all.most;
-        for (int i = 0; i < NODES; i++)
-            values[i] = value;
-        return;
-    }
-    block_fill(skin, block, begin, end, ty_max(all.most, reach) + join + reach, at, values);
+    block_look look = block_look_at(skin, block, number);
+    float reach = 2.0f * skin->step, nearby = ty_max(look.all.most, reach) + look.join + reach;
+    block_fill(skin, block, skin->begin[number], skin->begin[number + 1], nearby, look.middle, values);
 }

@@ -144,7 +144,7 @@ static inline void host_make(const char* name, int detail, host_files* out)
         count = 4;
     }
     else
-        parts[0] = host_ball(0.05f, detail > 1 ? 1024 : 96);
+        parts[0] = host_ball(0.05f, detail > 1 ? 1160 : 96);
     host_save(name, parts, count, out);
 }
 

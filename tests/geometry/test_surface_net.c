@@ -19,6 +19,7 @@ typedef struct field
     field_fn* at;
     const void* context;
     float step;
+
 } field;
 
 static void fill(void* context, const int block[3], float values[TY_NET_NODES])
@@ -33,15 +34,30 @@ static void fill(void* context, const int block[3], float values[TY_NET_NODES])
     }
 }
 
+static bool sparse; // blocks wholly inside are not looked at
+
 static ty_status net_make(field* f, ty_workers* workers, ty_net** out, ty_error* error)
 {
-    static int32_t all[BLOCKS * BLOCKS * BLOCKS];
+    static int32_t looked[BLOCKS * BLOCKS * BLOCKS], solid[BLOCKS * BLOCKS * BLOCKS];
+    int count = 0, solids = 0;
     for (int i = 0; i < BLOCKS * BLOCKS * BLOCKS; i++)
-        all[i] = i;
+    {
+        float values[TY_NET_NODES], most = -TY_FLOAT_MAX;
+        fill(f, (const int[3]){i % BLOCKS, i / BLOCKS % BLOCKS, i / BLOCKS / BLOCKS}, values);
+        for (int k = 0; k < TY_NET_NODES; k++)
+            most = ty_max(most, values[k]);
+        if (sparse && most < -3.0f * f->step)
+            solid[solids++] = i;
+        else
+            looked[count++] = i;
+    }
+    assert_true(!sparse || solids > 0);
     ty_net_def def = {.step = f->step,
                       .blocks = {BLOCKS, BLOCKS, BLOCKS},
-                      .active = all,
-                      .active_count = BLOCKS * BLOCKS * BLOCKS,
+                      .active = looked,
+                      .solid = solid,
+                      .active_count = count,
+                      .solid_count = solids,
                       .fill = fill,
                       .context = f};
     return ty_net_create(&def, workers, out, error);
@@ -322,6 +338,25 @@ static void pieces_are_counted_and_the_largest_kept(void** state)
     ty_mesh_destroy(mesh);
 }
 
+static void what_lies_inside_need_not_be_stored(void** state)
+{
+    (void)state;
+    ty_mesh* meshes[2];
+    field f = {balls_at, &one_ball, 1.0f / 20.0f};
+    for (int i = 0; i < 2; i++)
+    {
+        sparse = i == 1;
+        meshes[i] = mesh_make(&f, 8, true, NULL, NULL);
+    }
+    sparse = false;
+    assert_int_equal(meshes[0]->vertex_count, meshes[1]->vertex_count);
+    assert_memory_equal(meshes[0]->positions, meshes[1]->positions, meshes[0]->vertex_count * sizeof(ty_vec3));
+    assert_int_equal(meshes[0]->triangle_count, meshes[1]->triangle_count);
+    assert_one_shell(meshes[1]);
+    ty_mesh_destroy(meshes[0]);
+    ty_mesh_destroy(meshes[1]);
+}
+
 static ty_vec3 on_the_ball(void* context, ty_vec3 p)
 {
     int* asked = context;
@@ -485,6 +520,7 @@ int main(void)
         cmocka_unit_test(thin_plates_are_closed),
         cmocka_unit_test(chance_stays_manifold),
         cmocka_unit_test(pieces_are_counted_and_the_largest_kept),
+        cmocka_unit_test(what_lies_inside_need_not_be_stored),
         cmocka_unit_test(corners_are_mended),
         cmocka_unit_test(necks_get_room),
         cmocka_unit_test(workers_change_no_bit),

@@ -20,10 +20,11 @@ typedef struct ty_net_def
     ty_vec3 origin; // of node 0, m
     float step;     // m, between nodes
     int blocks[3];  // of the whole grid, fewer than 2^31 together
-    // Blocks that are looked at, [active_count], ascending numbers ((z * blocks[1] + y) * blocks[0] + x); all others
-    // count as outside. Each that has a node within two steps of the inside must be among them.
-    const int32_t* active;
-    int active_count;
+    // Blocks that are looked at, [active_count], ascending numbers ((z * blocks[1] + y) * blocks[0] + x), and such as
+    // lie inside as a whole; all others count as outside. Each that has nodes within two steps of the surface must be
+    // among the former.
+    const int32_t *active, *solid;
+    int active_count, solid_count;
     ty_net_fill* fill;
     void* context;
 } ty_net_def;
