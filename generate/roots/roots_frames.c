@@ -39,6 +39,8 @@ typedef struct drawing
     const float *age, *full; // [vertex_count] of the still mesh: what it says is what happens
     float* radius;           // the same of mesh
     float t;
+    const float* bent; // the still mesh's curvature, or NULL: it has none
+    float* curvature;  // the same of mesh
 } drawing;
 
 static void axes_find(void* context, int64_t begin, int64_t end, int worker)
@@ -76,6 +78,8 @@ static void vertices_draw(void* context, int64_t begin, int64_t end, int worker)
         if (d->result->axes) // tubes, each by itself
             p = roots_center_at(&d->result->axes[v], grown);
         d->radius[v] = d->full[v] * grown;
+        if (d->bent)
+            d->curvature[v] = d->bent[v] / ty_max(grown, 1e-3f); // thinner roots are rounder
         if (h->point >= 0 || d->result->axes)
             d->mesh->positions[v] = ty_mad(p, h->offset, grown);
     }
@@ -128,6 +132,9 @@ static ty_status frames_draw(const roots_result* result, const ty_mesh_sink* sin
     d.age = ty_mesh_find_attribute(result->mesh, "age")->values;
     d.full = ty_mesh_find_attribute(result->mesh, "radius")->values;
     d.radius = ty_mesh_add_attribute(d.mesh, "radius", 1);
+    const ty_mesh_attribute* bent = ty_mesh_find_attribute(result->mesh, "curvature");
+    d.bent = bent ? bent->values : NULL;
+    d.curvature = bent ? ty_mesh_add_attribute(d.mesh, "curvature", 1) : NULL;
     ty_status status = TY_OK;
     ty_vec3* sums = TY_TRY_ALLOC(ty_vec3, d.mesh->vertex_count);
     if (!d.vertices || !d.places || !d.carry || !sums)

@@ -180,6 +180,16 @@ static ty_mesh* split(const ty_mesh* mesh, const seams* s)
     return out;
 }
 
+// The mean of the principal curvatures as an attribute, 1/m: 1 / (2 r) on a straight root, below 0 where roots meet.
+static void curvature_dress(ty_mesh* mesh)
+{
+    float* mean = ty_mesh_add_attribute(mesh, "curvature", 1);
+    ty_mesh_compute_welds(mesh);
+    ty_mesh_compute_curvature(mesh, 1);
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+        mean[v] = 0.5f * (mesh->curvature_1[v] + mesh->curvature_2[v]);
+}
+
 // d says on what and by which recipe; *mesh is replaced.
 static ty_status dress(dressing d, ty_workers* workers, ty_mesh** mesh, ty_error* error)
 {
@@ -202,6 +212,7 @@ static ty_status dress(dressing d, ty_workers* workers, ty_mesh** mesh, ty_error
     {
         normals_tilt(*mesh, d.samples);
         normals_fill(*mesh);
+        curvature_dress(*mesh);
     }
     for (uint32_t t = 0; t < (*mesh)->triangle_count && status == TY_OK; t++)
         triangle_seams(&d, t, &s);

@@ -103,6 +103,34 @@ static void a_network_by_hand_is_a_mesh(void** state)
     made_term(&made);
 }
 
+// Away from what it leaves and from its end the branch is a cylinder of 3 mm: its mean curvature is 1 / 6 mm.
+static void a_straight_root_has_its_curvature(void** state)
+{
+    (void)state;
+    ty_roots_recipe recipe = coarse();
+    recipe.bark = 0.0f;
+    recipe.detail = 0.5e-3f;
+    recipe.curves = FILE_NAME;
+    save_parts(stem, branch, lines);
+    ty_made made = make(&recipe);
+    const ty_mesh_attribute* curvature = ty_mesh_find_attribute(made.mesh, "curvature");
+    assert_non_null(curvature);
+    double sum = 0.0, worst = 0.0;
+    int count = 0;
+    for (uint32_t v = 0; v < made.mesh->vertex_count; v++)
+        if (made.mesh->positions[v].x > 0.12f && made.mesh->positions[v].x < 0.145f)
+        {
+            double relative = (double)curvature->values[v] * 0.006;
+            worst = fabs(relative - 1.0) > worst ? fabs(relative - 1.0) : worst;
+            sum += relative;
+            count++;
+        }
+    print_message("mean curvature %.4f / (2 r), off by %.3f at most, at %d vertices\n", sum / count, worst, count);
+    assert_true(count > 1000);
+    assert_true(fabs(sum / count - 1.0) < 0.01 && worst < 0.1);
+    made_term(&made);
+}
+
 static void expect(int line, int column, const char* part)
 {
     ty_roots_recipe recipe = coarse();
@@ -187,6 +215,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_written_comes_back),
         cmocka_unit_test(a_network_by_hand_is_a_mesh),
+        cmocka_unit_test(a_straight_root_has_its_curvature),
         cmocka_unit_test(mistakes_are_named_in_place),
         cmocka_unit_test(cut_files_are_refused),
     };

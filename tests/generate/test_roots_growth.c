@@ -89,12 +89,16 @@ static void no_vertex_becomes_thinner(void** state)
     {
         const float *before = ty_mesh_find_attribute(f.frames[i - 1], "radius")->values,
                     *now = ty_mesh_find_attribute(f.frames[i], "radius")->values;
+        const float *bend = ty_mesh_find_attribute(f.frames[i], "curvature")->values,
+                    *bent = ty_mesh_find_attribute(still, "curvature")->values;
         assert_memory_equal(f.frames[i]->triangles, still->triangles,
                             still->triangle_count * sizeof(*still->triangles));
         for (uint32_t v = 0; v < still->vertex_count; v++)
         {
             assert_true(now[v] >= before[v]);
             thicker += now[v] > before[v];
+            if (now[v] > 0.01f * full[v])
+                assert_float_equal(bend[v] * now[v], bent[v] * full[v], 1e-3f * (1.0f + fabsf(bent[v] * full[v])));
         }
         assert_true(volume(f.frames[i]) > volume(f.frames[i - 1]));
     }

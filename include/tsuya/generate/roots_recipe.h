@@ -174,8 +174,8 @@ const ty_param_table* ty_roots_recipe_params(void);
 // def is a ty_roots_recipe. The mesh is one closed surface, smooth, with uv (turns about the root from the side that is
 // away from the host; metres along it, from the trunk) and the attributes `radius` (m), `level` (0 = main root), `join`
 // (0..1, how much roots run together there), `sink` (depth that it may reach under the host, of the radius), `root`
-// (its number), `along` (m from the trunk) and `age` (0..1, when the tip passed). On failure *out is NULL, else as
-// ty_generator's make.
+// (its number), `along` (m from the trunk), `age` (0..1, when the tip passed) and `curvature` (mean, 1/m). On
+// failure *out is NULL, else as ty_generator's make.
 TY_CHECKED ty_status ty_roots_make(const void* def, ty_workers* workers, ty_mesh** out, ty_error* error);
 // The same, with what else is wanted in out.
 TY_CHECKED ty_status ty_roots_make_all(const void* def, ty_workers* workers, ty_made* out, ty_error* error);
