@@ -30,6 +30,28 @@ ty_status voxels_init(ty_bounds bounds, float step, float margin, ty_voxels* out
     return out->values ? TY_OK : ty_error_set(error, TY_NO_MEMORY, "no memory for a grid of %zu nodes", count);
 }
 
+typedef struct rows
+{
+    int count; // of a layer
+    voxels_row_fn* row;
+    void* context;
+} rows;
+
+static void layers_run(void* context, int64_t begin, int64_t end, int worker)
+{
+    const rows* r = context;
+    (void)worker;
+    for (int k = (int)begin; k < (int)end; k++)
+        for (int j = 0; j < r->count; j++)
+            r->row(r->context, j, k);
+}
+
+void voxels_rows(const ty_voxels* v, ty_workers* workers, voxels_row_fn* row, void* context)
+{
+    rows r = {v->size[1], row, context};
+    ty_parallel_all(workers, v->size[2], 2, layers_run, &r);
+}
+
 void ty_voxels_term(ty_voxels* voxels)
 {
     ty_free(voxels->values);

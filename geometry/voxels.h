@@ -25,3 +25,7 @@ static inline ty_vec3 voxels_place(const ty_voxels* v, int i, int j, int k)
 {
     return ty_mad(v->origin, ty_vec3_make((float)i, (float)j, (float)k), v->step);
 }
+
+// Every row of nodes along x, those of a layer by one worker. workers may be NULL.
+typedef void voxels_row_fn(void* context, int j, int k);
+void voxels_rows(const ty_voxels* v, ty_workers* workers, voxels_row_fn* row, void* context);

@@ -82,61 +82,50 @@ static void slabs_scan(void* context, int64_t begin, int64_t end, int worker)
 
 // --- nodes ---
 
-static void layers_search(void* context, int64_t begin, int64_t end, int worker)
+static void row_search(void* context, int j, int k)
 {
     field* f = context;
     voxels_scan* s = &f->s;
     const ty_voxels* v = s->v;
-    (void)worker;
-    for (int k = (int)begin; k < (int)end; k++)
-        for (int j = 0; j < v->size[1]; j++)
-            for (int i = 0; i < v->size[0]; i++)
-            {
-                size_t node = voxels_index(v, i, j, k);
-                ty_vec3 p = voxels_place(v, i, j, k);
-                if (s->site[node] == (int32_t)node)
-                    continue;
-                voxels_scan_try(s, node, p, s->near[s->site[node]]);
-                if (v->values[node] < ty_sqr(NEAR * v->step))
-                    voxels_scan_descend(s, node, p);
-            }
+    for (int i = 0; i < v->size[0]; i++)
+    {
+        size_t node = voxels_index(v, i, j, k);
+        ty_vec3 p = voxels_place(v, i, j, k);
+        if (s->site[node] == (int32_t)node)
+            continue;
+        voxels_scan_try(s, node, p, s->near[s->site[node]]);
+        if (v->values[node] < ty_sqr(NEAR * v->step))
+            voxels_scan_descend(s, node, p);
+    }
 }
 
 // Half of the nodes, as those of a chessboard: their neighbours are all of the other half.
-static void layers_ask(void* context, int64_t begin, int64_t end, int worker)
+static void row_ask(void* context, int j, int k)
 {
     field* f = context;
     voxels_scan* s = &f->s;
     const ty_voxels* v = s->v;
-    (void)worker;
-    for (int k = (int)begin; k < (int)end; k++)
-        for (int j = 0; j < v->size[1]; j++)
-            for (int i = (j + k + f->parity) & 1; i < v->size[0]; i += 2)
-            {
-                size_t node = voxels_index(v, i, j, k);
-                if (s->site[node] != (int32_t)node && v->values[node] < ty_sqr(BAND * v->step))
-                    voxels_scan_ask(s, (const int[3]){i, j, k}, voxels_place(v, i, j, k));
-            }
+    for (int i = (j + k + f->parity) & 1; i < v->size[0]; i += 2)
+    {
+        size_t node = voxels_index(v, i, j, k);
+        if (s->site[node] != (int32_t)node && v->values[node] < ty_sqr(BAND * v->step))
+            voxels_scan_ask(s, (const int[3]){i, j, k}, voxels_place(v, i, j, k));
+    }
 }
 
 // Bodies may overlap and may be inside out: what counts is that rows wind about something.
-static void layers_sign(void* context, int64_t begin, int64_t end, int worker)
+static void row_sign(void* context, int j, int k)
 {
     field* f = context;
     const ty_voxels* v = f->s.v;
-    (void)worker;
-    for (int k = (int)begin; k < (int)end; k++)
-        for (int j = 0; j < v->size[1]; j++)
-        {
-            int turns = 0;
-            size_t row = voxels_index(v, 0, j, k);
-            for (size_t i = row; i < row + (size_t)v->size[0]; i++)
-            {
-                turns += f->s.turns[i];
-                f->twice[k] |= turns > 1 || turns < -1;
-                v->values[i] = turns != 0 ? -sqrtf(v->values[i]) : sqrtf(v->values[i]);
-            }
-        }
+    int turns = 0;
+    size_t row = voxels_index(v, 0, j, k);
+    for (size_t i = row; i < row + (size_t)v->size[0]; i++)
+    {
+        turns += f->s.turns[i];
+        f->twice[k] |= turns > 1 || turns < -1;
+        v->values[i] = turns != 0 ? -sqrtf(v->values[i]) : sqrtf(v->values[i]);
+    }
 }
 
 static bool field_run(field* f, ty_workers* workers)
@@ -149,10 +138,10 @@ static bool field_run(field* f, ty_workers* workers)
     ty_parallel_all(workers, slabs, 1, slabs_scan, f);
     if (!voxels_scan_transform(&f->s, workers))
         return false;
-    ty_parallel_all(workers, layers, 2, layers_search, f);
+    voxels_rows(f->s.v, workers, row_search, f);
     for (f->parity = 0; f->parity < 2; f->parity++)
-        ty_parallel_all(workers, layers, 2, layers_ask, f);
-    ty_parallel_all(workers, layers, 2, layers_sign, f);
+        voxels_rows(f->s.v, workers, row_ask, f);
+    voxels_rows(f->s.v, workers, row_sign, f);
     if (f->parts.open_count > 0 && !voxels_open_fill(&f->s, &f->parts, workers))
         return false;
     bool overlap = f->parts.open_count > 0 && !f->parts.closed;

@@ -119,48 +119,41 @@ static float mean_of(const opening* o, int i, int j, int k)
     return count > 0.0f ? sum / count : o->wound[node];
 }
 
-static void layers_mean(void* context, int64_t begin, int64_t end, int worker)
+static void row_mean(void* context, int j, int k)
 {
     const opening* o = context;
     const ty_voxels* v = o->s->v;
-    (void)worker;
-    for (int k = (int)begin; k < (int)end; k++)
-        for (int j = 0; j < v->size[1]; j++)
-            for (int i = 0; i < v->size[0]; i++)
-            {
-                size_t node = voxels_index(v, i, j, k);
-                o->next[node] = o->s->turns[node] ? o->wound[node] : mean_of(o, i, j, k);
-            }
+    for (int i = 0; i < v->size[0]; i++)
+    {
+        size_t node = voxels_index(v, i, j, k);
+        o->next[node] = o->s->turns[node] ? o->wound[node] : mean_of(o, i, j, k);
+    }
 }
 
 // Nodes on the surface itself, and in gaps too narrow for places.
-static void layers_rest(void* context, int64_t begin, int64_t end, int worker)
+static void row_rest(void* context, int j, int k)
 {
     const opening* o = context;
     const ty_voxels* v = o->s->v;
-    (void)worker;
-    for (int k = (int)begin; k < (int)end; k++)
-        for (int j = 0; j < v->size[1]; j++)
-            for (int i = 0; i < v->size[0]; i++)
-            {
-                float* wound = &o->wound[voxels_index(v, i, j, k)];
-                *wound = *wound == UNKNOWN ? winding_at(o->w, voxels_place(v, i, j, k)) : *wound;
-            }
+    for (int i = 0; i < v->size[0]; i++)
+    {
+        float* wound = &o->wound[voxels_index(v, i, j, k)];
+        *wound = *wound == UNKNOWN ? winding_at(o->w, voxels_place(v, i, j, k)) : *wound;
+    }
 }
 
 static void numbers_find(opening* o, ty_workers* workers)
 {
-    int layers = o->s->v->size[2];
     ty_parallel_all(workers, (int64_t)o->size[1] * o->size[2], 4, lattice_fill, o);
     ty_parallel_all(workers, (int64_t)(o->size[1] - 1) * (o->size[2] - 1), 4, blocks_fill, o);
     for (int round = 0; round < ROUNDS; round++)
     {
-        ty_parallel_all(workers, layers, 2, layers_mean, o);
+        voxels_rows(o->s->v, workers, row_mean, o);
         float* done = o->next;
         o->next = o->wound;
         o->wound = done;
     }
-    ty_parallel_all(workers, layers, 2, layers_rest, o);
+    voxels_rows(o->s->v, workers, row_rest, o);
 }
 
 static void nodes_sign(void* context, int64_t begin, int64_t end, int worker)
@@ -201,56 +194,49 @@ static float lid_distance(const opening* o, int i, int j, int k)
 }
 
 // A lid node is a site; its turns are 1 + thousandths of a step to the lid, below 0 inside.
-static void lids_mark(void* context, int64_t begin, int64_t end, int worker)
+static void row_mark_lids(void* context, int j, int k)
 {
     const opening* o = context;
     const ty_voxels* v = o->s->v;
-    (void)worker;
-    for (int k = (int)begin; k < (int)end; k++)
-        for (int j = 0; j < v->size[1]; j++)
-            for (int i = 0; i < v->size[0]; i++)
-            {
-                size_t node = voxels_index(v, i, j, k);
-                float d = lid_distance(o, i, j, k);
-                o->s->site[node] = d < 0.0f ? -1 : (int32_t)node;
-                int whole = 1 + (int)(1e3f * d / v->step);
-                o->s->turns[node] = (int16_t)(v->values[node] < 0.0f ? -whole : whole);
-            }
+    for (int i = 0; i < v->size[0]; i++)
+    {
+        size_t node = voxels_index(v, i, j, k);
+        float d = lid_distance(o, i, j, k);
+        o->s->site[node] = d < 0.0f ? -1 : (int32_t)node;
+        int whole = 1 + (int)(1e3f * d / v->step);
+        o->s->turns[node] = (int16_t)(v->values[node] < 0.0f ? -whole : whole);
+    }
 }
 
 // Lids are no surface that anything is seen of: a part of a step will do.
-static void lids_apply(void* context, int64_t begin, int64_t end, int worker)
+static void row_apply_lids(void* context, int j, int k)
 {
     const opening* o = context;
     const ty_voxels* v = o->s->v;
-    (void)worker;
-    for (int k = (int)begin; k < (int)end; k++)
-        for (int j = 0; j < v->size[1]; j++)
-            for (int i = 0; i < v->size[0]; i++)
-            {
-                size_t node = voxels_index(v, i, j, k);
-                int32_t site = o->s->site[node];
-                int x = site % v->size[0] - i, y = site / v->size[0] % v->size[1] - j;
-                int z = site / v->size[0] / v->size[1] - k, turns = o->s->turns[site];
-                bool same = (turns < 0) == (v->values[node] < 0.0f);
-                float off = v->step * 1e-3f * ((float)(turns < 0 ? -turns : turns) - 1.0f);
-                float d = v->step * sqrtf((float)(x * x + y * y + z * z)) + (same ? off : -off);
-                v->values[node] = copysignf(ty_min(fabsf(v->values[node]), ty_max(d, 0.0f)), v->values[node]);
-            }
+    for (int i = 0; i < v->size[0]; i++)
+    {
+        size_t node = voxels_index(v, i, j, k);
+        int32_t site = o->s->site[node];
+        int x = site % v->size[0] - i, y = site / v->size[0] % v->size[1] - j;
+        int z = site / v->size[0] / v->size[1] - k, turns = o->s->turns[site];
+        bool same = (turns < 0) == (v->values[node] < 0.0f);
+        float off = v->step * 1e-3f * ((float)(turns < 0 ? -turns : turns) - 1.0f);
+        float d = v->step * sqrtf((float)(x * x + y * y + z * z)) + (same ? off : -off);
+        v->values[node] = copysignf(ty_min(fabsf(v->values[node]), ty_max(d, 0.0f)), v->values[node]);
+    }
 }
 
 static bool lids_close(opening* o, ty_workers* workers)
 {
-    int layers = o->s->v->size[2];
     bool any = false;
-    ty_parallel_all(workers, layers, 2, lids_mark, o);
+    voxels_rows(o->s->v, workers, row_mark_lids, o);
     for (size_t i = 0; i < voxels_count(o->s->v) && !any; i++)
         any = o->s->site[i] >= 0;
     if (!any)
         return true;
     if (!voxels_scan_transform(o->s, workers))
         return false;
-    ty_parallel_all(workers, layers, 2, lids_apply, o);
+    voxels_rows(o->s->v, workers, row_apply_lids, o);
     return true;
 }
 
