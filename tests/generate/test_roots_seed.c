@@ -43,7 +43,7 @@ static ty_roots_recipe recipe_for(int host)
     r.radius = 2e-3f;
     r.tip = r.detail = 0.8e-3f;
     r.length = 0.5f;
-    r.thesis.fall = 100.0f; // as printed roots leave a pillar and meet nothing
+    r.thesis.fall = 100.0f;                     // as printed roots leave a pillar and meet nothing
     r.first.spacing = r.second.spacing = 8e-3f; // ours: about as many branches
     r.first.reach = r.second.reach = 0.08f;
     return r;

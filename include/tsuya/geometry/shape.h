@@ -54,15 +54,15 @@ ty_shape_def ty_shape_def_default(void);
 ty_shape_def ty_shape_def_complete(const ty_shape_def* def);
 const ty_param_table* ty_shape_params(void);
 
-// Welds, normals, uv, bounds and curvature (by the shape's formula; of stones and blocks as measured) are filled in. Where
-// curvature jumps, the border has that of the flatter side. divisions is the number of segments around the equator,
-// rounded up to a multiple of 8 for spheres, ellipsoids and round boxes: a sphere has 0.75 divisions^2 triangles.
-// Impossible sizes are TY_BAD_INPUT naming the field.
+// Welds, normals, uv, bounds and curvature (by the shape's formula; of stones and blocks as measured) are filled in.
+// Where curvature jumps, the border has that of the flatter side. divisions is the number of segments around the
+// equator, rounded up to a multiple of 8 for spheres, ellipsoids and round boxes: a sphere has 0.75 divisions^2
+// triangles. Impossible sizes are TY_BAD_INPUT naming the field.
 TY_CHECKED ty_status ty_shape_create(const ty_shape_def* def, ty_mesh** out, ty_error* error);
 
 // Signed distance (negative inside) to the *interior* of a vessel: the space to be filled. For BOWL the hollow below
-// the rim; for the closed solids the solid itself; open shapes, stones, blocks, lathes and tubes have none: TY_FLOAT_MAX. Exact
-// or a lower bound of the distance inside, 1-Lipschitz. A bowl has no wall above its rim: there the distance is to the
-// lip, negative within the rim's radius and positive beyond, and jumps between. def must be one that ty_shape_create
-// accepts. Any thread.
+// the rim; for the closed solids the solid itself; open shapes, stones, blocks, lathes and tubes have none:
+// TY_FLOAT_MAX. Exact or a lower bound of the distance inside, 1-Lipschitz. A bowl has no wall above its rim: there the
+// distance is to the lip, negative within the rim's radius and positive beyond, and jumps between. def must be one that
+// ty_shape_create accepts. Any thread.
 float ty_shape_interior_distance(const ty_shape_def* def, ty_vec3 p);
