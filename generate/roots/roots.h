@@ -7,6 +7,9 @@
 #include <tsuya/geometry/trace.h>
 #include <tsuya/geometry/voxels.h>
 
+// roots_check.c
+TY_CHECKED ty_status roots_recipe_check(const ty_roots_recipe* recipe, ty_error* error);
+
 // --- host ---
 
 typedef enum roots_mask

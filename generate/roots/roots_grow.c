@@ -9,10 +9,25 @@ ty_vec3 growth_tangent(const roots_network* network, const roots_line* line, int
     return ty_normalize(ty_sub(network->points[after].p, network->points[before].p));
 }
 
+// Nothing grows thinner by it than roots end.
+static void radii_shape(const growth* g)
+{
+    const ty_roots_recipe* recipe = g->recipe;
+    for (int l = 0; l < g->network->line_count; l++)
+    {
+        const roots_line* line = &g->network->lines[l];
+        roots_point* p = g->network->points + line->first;
+        for (int i = 0; i < line->count && line->kind != ROOTS_TRUNK; i++)
+            p[i].r = ty_max(p[i].r * growth_ramp(&recipe->radius_by_length, (p[i].s - p[0].s) / recipe->length),
+                            ty_min(p[i].r, recipe->tip));
+    }
+}
+
 static bool wrap_grow(growth* g)
 {
     const ty_roots_recipe* recipe = g->recipe;
     bool done = growth_main(g) && growth_aerial(g);
+    radii_shape(g);
     growth_settle(g, 0, false);
     int first = g->network->line_count;
     done = done && growth_link(g, &recipe->first, ROOTS_MAIN, ROOTS_FIRST);

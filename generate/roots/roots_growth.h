@@ -25,6 +25,20 @@ static inline bool growth_leaves(const roots_line* line)
     return line->parent >= 0 && line->kind != ROOTS_MAIN;
 }
 
+// The recipe's ramp at x: straight from point to point, level beyond the ends; 1 without any.
+static inline float growth_ramp(const ty_param_list* ramp, float x)
+{
+    const ty_vec2* p = ramp->items;
+    int i = 0, last = ramp->count - 1;
+    if (last < 0)
+        return 1.0f;
+    while (i < last && p[i + 1].x < x)
+        i++;
+    if (i == last || x <= p[i].x)
+        return p[i].y;
+    return ty_lerp(p[i].y, p[i + 1].y, (x - p[i].x) / (p[i + 1].x - p[i].x));
+}
+
 // How high over the host the centre of a section lies, m.
 static inline float growth_height(const roots_point* p)
 {

@@ -38,6 +38,14 @@ static float reversed(uint32_t i)
     return ty_u32_to_float(x);
 }
 
+// The share of branches that the recipe lets leave at this height.
+static float density_at(const linking* k, float y)
+{
+    ty_bounds b = k->g->host->mesh->bounds;
+    float size = b.high.y - b.low.y;
+    return growth_ramp(&k->def->density_by_height, size > 0.0f ? (y - b.low.y) / size : 0.0f);
+}
+
 // Along each line, `spacing` apart on average, where it lies on the host. Places are those of a ruler whose marks do
 // not depend on the spacing, each with a number that says how soon it is used: a slightly closer spacing adds few and
 // moves none.
@@ -64,7 +72,7 @@ static void plans_make(linking* k)
                 i++;
             float order = reversed(n) + ty_u32_to_float(turn);
             order -= order >= 1.0f ? 1.0f : 0.0f;
-            if (i >= end || order >= used)
+            if (i >= end || order >= used * density_at(k, net->points[i].p.y))
                 continue;
             if (k->g->recipe->growth.avoid > 0.0f && // where they are not wanted none sets out
                 roots_host_mask(k->g->host, ROOTS_AVOID, net->points[i].p, NULL) > 0.5f)

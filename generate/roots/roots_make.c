@@ -228,30 +228,6 @@ static ty_status dress(dressing d, ty_workers* workers, ty_mesh** mesh, ty_error
 
 // --- all of it ---
 
-static ty_status share_check(const char* name, const float share[2], ty_error* error)
-{
-    if (share[0] <= share[1])
-        return TY_OK;
-    return ty_error_set(error, TY_BAD_INPUT, "%s.share: [%g, %g]; the first is at most the second", name,
-                        (double)share[0], (double)share[1]);
-}
-
-static ty_status recipe_check(const ty_roots_recipe* r, ty_error* error)
-{
-    if (!(r->tip <= r->radius))
-        return ty_error_set(error, TY_BAD_INPUT, "tip: %g mm; it is at most the radius, %g mm", (double)r->tip * 1e3,
-                            (double)r->radius * 1e3);
-    if (r->tubes.divisions % 2 != 0)
-        return ty_error_set(error, TY_BAD_INPUT, "tubes.divisions: %d; an even number 4..128", r->tubes.divisions);
-    if (!(r->detail <= r->tip))
-        return ty_error_set(error, TY_BAD_INPUT, "detail: %g mm; it is at most the tip, %g mm", (double)r->detail * 1e3,
-                            (double)r->tip * 1e3);
-    ty_status status = share_check("first", r->first.share, error);
-    if (status == TY_OK)
-        status = share_check("second", r->second.share, error);
-    return status == TY_OK ? share_check("aerial", r->aerial.share, error) : status;
-}
-
 ty_status roots_surface(const ty_roots_recipe* recipe, const roots_network* network, const roots_host* host,
                         ty_workers* workers, roots_skin** skin, ty_mesh** out, ty_error* error)
 {
@@ -316,7 +292,7 @@ ty_status ty_roots_make_all(const void* def, ty_workers* workers, ty_made* out, 
     roots_host host;
     roots_network network = {0};
     roots_result result = {.recipe = recipe, .host = &host, .network = &network};
-    ty_status status = recipe_check(recipe, error);
+    ty_status status = roots_recipe_check(recipe, error);
     if (status == TY_OK && out->growth.put && recipe->levels > 1)
         status = ty_error_set(error, TY_BAD_INPUT, "levels: %d; frames of growth have one", recipe->levels);
     if (status == TY_OK && recipe->curves)

@@ -196,6 +196,8 @@ PART(growth_table, growth, "roots.growth", "How a tip finds its way.", growth_ro
 #define OWNER ty_roots_link_def
 static const ty_param link_rows[] = {
     FIELD("spacing", TY_PARAM_FLOAT, "mm", 0, 1e6, spacing, "mean length of the parent between them; 0 = none"),
+    FIELD("density_by_height", TY_PARAM_POINTS2, "", 0, 1, density_by_height,
+          "[height, share]: which share of them leaves, from the host's lowest point, 0, to its highest, 1"),
     FIELD("reach", TY_PARAM_FLOAT, "mm", 0, 1e6, reach, "how far a partner may be"),
     FIELD("slant", TY_PARAM_FLOAT, "", 0, 4, slant, "how much farther down they end, of the way across"),
     FIELD("share", TY_PARAM_FLOAT2, "", 0.1, 0.95, share, "radius against the thinner of both: from, to"),
@@ -278,6 +280,9 @@ static const ty_param recipe_rows[] = {
     FIELD("tip", TY_PARAM_FLOAT, "mm", 0.05, 1e6, tip, "radius at which a root ends"),
     FIELD("taper", TY_PARAM_FLOAT, "m", 1e-3, 1e6, taper, "length over which a radius falls to 37 %"),
     FIELD("length", TY_PARAM_FLOAT, "m", 1e-3, 1e6, length, "of a main root at most"),
+    FIELD(
+        "radius_by_length", TY_PARAM_POINTS2, "", 0, 10, radius_by_length,
+        "[way, factor]: what radii are multiplied by, from the trunk, 0, to `length`, 1; branches follow their roots"),
     GROUP("growth", &growth_table, growth, "how they find their way"),
     GROUP("first", &first_table, first, "branches from a main root to the next"),
     GROUP("second", &second_table, second, "branches between first branches"),

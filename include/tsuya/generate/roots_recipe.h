@@ -85,11 +85,12 @@ typedef struct ty_roots_growth_def
 // Branches that grow from one root into another.
 typedef struct ty_roots_link_def
 {
-    float spacing;  // m, mean along the parent; 0 = none
-    float reach;    // m, to the farthest partner
-    float slant;    // how much farther down the partner they end, of the way across
-    float share[2]; // radius against the thinner of both: from, to
-    float wander;   // how far they swing to the side, of the way across
+    float spacing;                   // m, mean along the parent; 0 = none
+    ty_param_list density_by_height; // of ty_vec2: height on the host, 0..1, and the share of branches there, 0..1
+    float reach;                     // m, to the farthest partner
+    float slant;                     // how much farther down the partner they end, of the way across
+    float share[2];                  // radius against the thinner of both: from, to
+    float wander;                    // how far they swing to the side, of the way across
 } ty_roots_link_def;
 
 typedef struct ty_roots_aerial_def
@@ -146,12 +147,13 @@ typedef struct ty_roots_recipe
     ty_param_list obstacles; // of ty_roots_object_def: what roots keep clear of
     ty_roots_start_def start;
     ty_roots_trunk_def trunk;
-    int count;       // main roots, 1..500
-    float radius;    // m, of a main root where it leaves the trunk
-    float variation; // of the radii, relative
-    float tip;       // m, radius where a root ends
-    float taper;     // m, length over which a radius falls to 1/e
-    float length;    // m, of a main root at most
+    int count;                      // main roots, 1..500
+    float radius;                   // m, of a main root where it leaves the trunk
+    float variation;                // of the radii, relative
+    float tip;                      // m, radius where a root ends
+    float taper;                    // m, length over which a radius falls to 1/e
+    float length;                   // m, of a main root at most
+    ty_param_list radius_by_length; // of ty_vec2: length, of `length`, and a factor to radii of main and aerial roots
     ty_roots_growth_def growth;
     ty_roots_link_def first, second; // between main roots, and between first branches
     ty_roots_aerial_def aerial;
