@@ -317,7 +317,7 @@ static int frame_count(const void* def)
 
 const ty_generator ty_roots_generator = {
     .kind = "roots",
-    .build_id = "roots 9",
+    .build_id = "roots 10",
     .product = TY_PRODUCT_MESH,
     .params = &recipe_table,
     .frame_count = frame_count,

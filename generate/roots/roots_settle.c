@@ -64,9 +64,9 @@ static void point_settle(const resting* on, roots_point* p, float over)
 
 // --- turns ---
 
-static bool turns_mark(const roots_point* points, int count, int keep, bool* marked)
+// Points about turns of a smaller cosine than most.
+static bool turns_mark(const roots_point* points, int count, int keep, float most, bool* marked)
 {
-    const float most = 0.77f; // cosine
     bool any = false;
     for (int i = 1; i + 1 < count; i++)
     {
@@ -85,13 +85,16 @@ static void ease(const resting* on, roots_point* points, const float* over, int 
 {
     enum
     {
-        ROUNDS = 32
+        HELD = 24, // rounds in which it keeps its height; of what is pushed to and fro between two sides the kinks go
+                   // all the same
+        ROUNDS = 64
     };
     if (count < 3)
         return;
     bool *marked = TY_ALLOC(bool, count), *ever = TY_ALLOC(bool, count);
     ty_vec3 n;
-    for (int round = 0; round < ROUNDS && turns_mark(points, count, keep, marked); round++)
+    for (int round = 0; round < ROUNDS && turns_mark(points, count, keep, round < HELD ? 0.77f : 0.17f, marked);
+         round++)
         for (int i = 1; i + 1 < count; i++)
         {
             roots_point* p = &points[i];
@@ -100,7 +103,8 @@ static void ease(const resting* on, roots_point* points, const float* over, int 
             marked[i] = false;
             ever[i] = true;
             p->p = ty_lerp3(p->p, ty_mul(ty_add(points[i - 1].p, points[i + 1].p), 0.5f), 0.6f);
-            float wrong = p->sink > 0.0f ? rest_height(on, p->p, &n) - growth_height(p) - over[i] : 0.0f;
+            bool held = round < HELD && p->sink > 0.0f;
+            float wrong = held ? rest_height(on, p->p, &n) - growth_height(p) - over[i] : 0.0f;
             if (wrong < 0.0f)
                 p->p = ty_mad(p->p, n, -wrong);
         }

@@ -19,6 +19,7 @@ typedef struct roots_figures
     double gap_99;                 // on the attached side, of the radius
     uint32_t attached;             // vertices there
     double bend_least, bend_1;     // degrees: the least inner angle of centre lines, and that of 1 %
+    double join_least, join_1;     // the same where lines meet
     int lines, parts;              // of the network: 1 = all are joined
     int unseen;                    // lines that no vertex belongs to
 } roots_figures;
@@ -174,7 +175,7 @@ typedef struct roots_lines
 {
     int points, lines;
     ty_vec3* at;
-    int *line, *parent, *end; // of each point; of each line
+    int *line, *kind, *parent, *end; // of each point; of each line
 } roots_lines;
 
 // Only what is written by the program's own `--curves`: columns in that order.
@@ -193,6 +194,7 @@ static bool roots_lines_read(const char* path, roots_lines* out)
                 sscanf(edge, "element edge %d", &edges) == 1 && sscanf(line, "element line %d", &out->lines) == 1;
     out->at = calloc((size_t)out->points + 1, sizeof *out->at);
     out->line = calloc((size_t)out->points + 1, sizeof(int));
+    out->kind = calloc((size_t)out->lines + 1, sizeof(int));
     out->parent = calloc((size_t)out->lines + 1, sizeof(int));
     out->end = calloc((size_t)out->lines + 1, sizeof(int));
     char* c = good ? (char*)body + strlen("end_header\n") : NULL;
@@ -209,7 +211,7 @@ static bool roots_lines_read(const char* path, roots_lines* out)
         (void)strtol(c, &c, 10);
     for (int i = 0; good && i < out->lines; i++)
     {
-        (void)strtol(c, &c, 10);
+        out->kind[i] = (int)strtol(c, &c, 10);
         out->parent[i] = (int)strtol(c, &c, 10);
         out->end[i] = (int)strtol(c, &c, 10);
         (void)strtoul(c, &c, 10);
@@ -224,6 +226,7 @@ static void roots_lines_term(roots_lines* lines)
 {
     free(lines->at);
     free(lines->line);
+    free(lines->kind);
     free(lines->parent);
     free(lines->end);
 }
@@ -233,6 +236,39 @@ static int roots_part(int* above, int line)
     while (above[line] != line)
         line = above[line] = above[above[line]];
     return line;
+}
+
+// The straighter way from one end of a line into another, which it reaches at the point nearest to that end.
+static double roots_join(const roots_lines* l, int end, int before, int other)
+{
+    int at = -1;
+    double best = 0.0;
+    for (int i = 0; i < l->points; i++)
+        if (l->line[i] == other &&
+            (at < 0 || ty_length(ty_sub(l->at[i], l->at[end])) < ty_length(ty_sub(l->at[at], l->at[end]))))
+            at = i;
+    for (int on = -1; at >= 0 && on <= 1; on += 2)
+        if (at + on >= 0 && at + on < l->points && l->line[at + on] == other)
+            best = fmax(best, roots_angle(ty_sub(l->at[before], l->at[end]), ty_sub(l->at[at + on], l->at[at])));
+    return best;
+}
+
+// Of the ends of all lines but those of main roots (1), which run beside the trunk.
+static void roots_measure_joins(const roots_lines* l, roots_figures* out)
+{
+    double* joins = malloc((2 * (size_t)l->lines + 1) * sizeof *joins);
+    size_t count = 0;
+    for (int i = 0; i + 1 < l->points; i++)
+    {
+        int line = l->line[i], before = l->line[i + 1];
+        if ((i == 0 || l->line[i - 1] != line) && l->parent[line] >= 0 && l->kind[line] != 1)
+            joins[count++] = roots_join(l, i, i + 1, l->parent[line]);
+        if ((i + 2 == l->points || l->line[i + 2] != before) && before == line && l->end[line] >= 0)
+            joins[count++] = roots_join(l, i + 1, i, l->end[line]);
+    }
+    out->join_1 = roots_share(joins, count, 0.01);
+    out->join_least = count > 0 ? joins[0] : 180.0;
+    free(joins);
 }
 
 static void roots_measure_lines(const roots_lines* l, const ty_mesh* mesh, roots_figures* out)
@@ -285,6 +321,7 @@ static bool roots_measure(const char* mesh_path, const char* curves_path, const 
     roots_measure_shape(mesh, out);
     good = roots_measure_hold(mesh, &host, out);
     roots_measure_lines(&lines, mesh, out);
+    roots_measure_joins(&lines, out);
     roots_lines_term(&lines);
     ty_world_destroy(host.world);
     ty_mesh_destroy(mesh);

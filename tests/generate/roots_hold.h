@@ -24,10 +24,10 @@ static roots_figures grow(const char* name, const ty_roots_recipe* recipe, const
     ty_free(made.curves);
     assert_true(roots_measure(mesh, curves, ground, &figures));
     print_message("%-9s %u triangles, %u shell, corners %.1f (0.1 %%: %.1f), deepest %.3f r (%+.4f), gap %.3f r of %u, "
-                  "bends %.0f (1 %%: %.0f), %d lines, %d parts, %d unseen\n",
+                  "bends %.0f (1 %%: %.0f), joins %.0f (1 %%: %.0f), %d lines, %d parts, %d unseen\n",
                   name, figures.triangles, figures.components, figures.corner_least, figures.corner_1, figures.deepest,
-                  figures.deeper, figures.gap_99, figures.attached, figures.bend_least, figures.bend_1, figures.lines,
-                  figures.parts, figures.unseen);
+                  figures.deeper, figures.gap_99, figures.attached, figures.bend_least, figures.bend_1,
+                  figures.join_least, figures.join_1, figures.lines, figures.parts, figures.unseen);
     return figures;
 }
 
@@ -58,6 +58,7 @@ static void holds(const char* name, int detail)
     assert_true(f.deeper <= 0.05);
     assert_true(f.attached > 100 && f.gap_99 <= GAP);
     assert_true(f.bend_least >= BEND_LEAST && f.bend_1 >= BEND_1);
+    assert_true(f.join_least >= BEND_LEAST && f.join_1 >= BEND_1);
     assert_true(f.lines > 11);
     assert_int_equal(f.parts, 1);
     assert_int_equal(f.unseen, 0);
