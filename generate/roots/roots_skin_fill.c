@@ -34,7 +34,7 @@ static void nodes_place(const roots_skin* skin, const int block[3], nodes* out)
 static void segment_meet(const roots_segment* restrict s, int32_t number, const nodes* restrict at,
                          nearest* restrict best)
 {
-    float t[NODES], d[NODES];
+    float t[NODES], d[NODES], h[NODES], up[NODES];
     for (int i = 0; i < NODES; i++)
     {
         float px = at->x[i] - s->a.x, py = at->y[i] - s->a.y, pz = at->z[i] - s->a.z;
@@ -48,14 +48,18 @@ static void segment_meet(const roots_segment* restrict s, int32_t number, const 
         float px = at->x[i] - s->a.x, py = at->y[i] - s->a.y, pz = at->z[i] - s->a.z;
         float qx = px - t[i] * s->d.x, qy = py - t[i] * s->d.y, qz = pz - t[i] * s->d.z;
         float nx = s->na.x + t[i] * s->nd.x, ny = s->na.y + t[i] * s->nd.y, nz = s->na.z + t[i] * s->nd.z;
-        float h = qx * nx + qy * ny + qz * nz, fill = s->fill_a + t[i] * s->fill_d;
-        float side = qx * qx + qy * qy + qz * qz - h * h, up = h + fill;
-        up = up > 0.0f ? 0.0f : up;
-        up = h > up ? h : up;
-        d[i] = (side < 0.0f ? 0.0f : side) + up * up * (1.0f + s->ea + t[i] * s->ed);
+        h[i] = qx * nx + qy * ny + qz * nz;
+        up[i] = h[i] + (s->fill_a + t[i] * s->fill_d);
+        d[i] = qx * qx + qy * qy + qz * qz - h[i] * h[i];
     }
     for (int i = 0; i < NODES; i++)
-        d[i] = sqrtf(d[i]) - (s->ra + t[i] * s->rd);
+        up[i] = up[i] > 0.0f ? 0.0f : up[i];
+    for (int i = 0; i < NODES; i++)
+        up[i] = h[i] > up[i] ? h[i] : up[i];
+    for (int i = 0; i < NODES; i++)
+        d[i] = d[i] < 0.0f ? 0.0f : d[i];
+    for (int i = 0; i < NODES; i++)
+        d[i] = sqrtf(d[i] + up[i] * up[i] * (1.0f + s->ea + t[i] * s->ed)) - (s->ra + t[i] * s->rd);
     for (int i = 0; i < NODES; i++)
     {
         bool nearer = d[i] < best->distance[i];
@@ -154,10 +158,13 @@ static void block_fill(const roots_skin* skin, const int block[3], int32_t begin
     {
         int line = skin->segments[skin->list[i]].line;
         bool met = false;
+        float most = nearby; // what is farther than another segment of its root at every node is nowhere the nearest
+        for (int32_t k = i; k < end && skin->segments[skin->list[k]].line == line; k++)
+            most = ty_min(most, segment_range(&skin->segments[skin->list[k]], middle, half).most);
         for (; i < end && skin->segments[skin->list[i]].line == line; i++)
         {
             const roots_segment* s = &skin->segments[skin->list[i]];
-            if (segment_range(s, middle, half).least > nearby)
+            if (segment_range(s, middle, half).least > most)
                 continue;
             for (int k = 0; !met && k < NODES; k++)
                 one.distance[k] = TY_FLOAT_MAX;
