@@ -52,6 +52,17 @@ static void add_curvature(ty_glb_builder* builder, json_t* attributes, const ty_
                             ty_glb_add(builder, mesh->direction_1, n, TY_GLTF_FLOAT, 3, VERTICES));
 }
 
+// Images of the format begin at the top.
+static int add_uvs(ty_glb_builder* builder, const ty_mesh* mesh)
+{
+    ty_vec2* uvs = TY_ALLOC(ty_vec2, mesh->vertex_count);
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        uvs[i] = (ty_vec2){mesh->uvs[i].x, 1.0f - mesh->uvs[i].y};
+    int accessor = ty_glb_add(builder, uvs, mesh->vertex_count, TY_GLTF_FLOAT, 2, VERTICES);
+    ty_free(uvs);
+    return accessor;
+}
+
 // The number of a material of that name, added when there is none.
 static int find_material(json_t* materials, const char* name)
 {
@@ -79,8 +90,7 @@ static json_t* add_vertices(ty_glb_builder* builder, const ty_mesh* mesh)
     int normal = ty_glb_add(builder, mesh->normals, n, TY_GLTF_FLOAT, 3, VERTICES);
     json_object_set_new(attributes, "NORMAL", json_integer(normal));
     if (mesh->uvs)
-        json_object_set_new(attributes, "TEXCOORD_0",
-                            json_integer(ty_glb_add(builder, mesh->uvs, n, TY_GLTF_FLOAT, 2, VERTICES)));
+        json_object_set_new(attributes, "TEXCOORD_0", json_integer(add_uvs(builder, mesh)));
     add_curvature(builder, attributes, mesh);
     for (int i = 0; i < mesh->attribute_count; i++)
     {

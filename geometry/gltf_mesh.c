@@ -217,7 +217,7 @@ static ty_status read_uvs(const maker* m)
         one.part_count = 1;
         status = read_channel(&one, uv_semantic(m, &m->parts[i]), 2, &m->out->uvs[0].x);
     }
-    for (uint32_t v = 0; v < m->out->vertex_count && m->job->flips_v; v++)
+    for (uint32_t v = 0; v < m->out->vertex_count; v++) // images begin at the top
         m->out->uvs[v].y = 1.0f - m->out->uvs[v].y;
     return status;
 }

@@ -9,7 +9,6 @@ typedef struct ty_gltf_mesh_job
     const char* name; // of the file, for messages
     const ty_gltf* gltf;
     bool keeps_vertices;           // all of them as they are; else those that triangles use
-    bool flips_v;                  // glTF's images begin at the top
     const char* const* slot_names; // by material, and one more for none; NULL = no slots
     const int* uv_sets;            // the same: 0 or 1
     int material_count;

@@ -127,7 +127,6 @@ static ty_status send_meshes(const import_job* job, const ty_gltf* gltf, int fd,
     const ty_gltf_scene* scene = job->scene;
     const ty_gltf_mesh_job meshes = {.name = scene->path,
                                      .gltf = gltf,
-                                     .flips_v = true,
                                      .slot_names = job->slots,
                                      .uv_sets = scene->source->uv_sets,
                                      .material_count = scene->material_count,

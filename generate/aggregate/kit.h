@@ -6,7 +6,7 @@
 #include <tsuya/generate/xpbd.h>
 
 // Rises with each change of the bytes that recipes give, or of states.
-#define AGGREGATE_BUILD_ID "aggregate 7"
+#define AGGREGATE_BUILD_ID "aggregate 8"
 
 // What has left the mouth so far, and what is to come, in order.
 typedef struct pour

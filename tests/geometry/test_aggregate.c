@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <tsuya/base/file.h>
+#include <tsuya/geometry/mesh_file.h>
 #include <unistd.h>
 
 // Three prototypes (one without instances), interleaved, mirrored and stretched.
@@ -117,6 +118,11 @@ static void round_trip(void** state)
     for (int i = 0; i < 3; i++)
         assert_same_mesh(heap->prototypes[i], back->prototypes[i]);
     assert_memory_equal(heap->prototype_index, back->prototype_index, 101 * sizeof(uint32_t));
+    ty_mesh* whole; // by the reader of any glTF file, whose images begin at the top
+    ty_error error;
+    assert_int_equal(ty_mesh_read(in_folder("a.glb"), &whole, &error), TY_OK);
+    assert_true(whole->uvs && whole->uvs[whole->vertex_count - 1].y == 0.7f);
+    ty_mesh_destroy(whole);
     assert_memory_equal(heap->ids, back->ids, 101 * sizeof(uint32_t));
     for (uint32_t i = 0; i < 101; i++)
         assert_same_map(&heap->transforms[i], &back->transforms[i]);
