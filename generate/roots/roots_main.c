@@ -93,6 +93,7 @@ static void tips_begin(march* m)
             t.p = roots_host_project(m->g->host, t.p, (t.flat - recipe->growth.sink) * t.r, &n);
         }
         t.n = n;
+        t.across = around;
         t.t = ty_normalize(ty_add(trunk ? (ty_vec3){0.0f, -1.0f, 0.0f} : out, ty_mul(around, 0.5f * t.twist)));
         if (!trunk)
             t.t = ty_normalize(growth_without(t.t, n));
@@ -106,6 +107,7 @@ static void starts_begin(march* m)
     const growth* g = m->g;
     const ty_roots_recipe* recipe = g->recipe;
     int each = (recipe->count + g->start_count - 1) / g->start_count;
+    float extent = ty_length(ty_sub(g->host->mesh->bounds.high, g->host->mesh->bounds.low));
     for (int i = 0; i < recipe->count; i++)
     {
         const roots_start* start = &g->starts[i % g->start_count];
@@ -121,6 +123,11 @@ static void starts_begin(march* m)
         t.n = start->n;
         t.t = ty_length(way) > 1e-3f ? ty_normalize(way) : frame.t;
         t.p = roots_host_project(g->host, start->p, (t.flat - recipe->growth.sink) * t.r, &t.n);
+        // its own side of the host is where it starts, and over the top where it goes to
+        ty_vec3 out = ty_mad(t.t, ty_sub(t.p, m->foot), 4.0f / ty_max(extent, 1e-9f));
+        out.y = 0.0f;
+        out = ty_length(out) > 1e-3f ? ty_normalize(out) : (ty_vec3){1.0f, 0.0f, 0.0f};
+        t.across = (ty_vec3){-out.z, 0.0f, out.x};
         march_add(m, t);
     }
 }

@@ -1,57 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// How tips find their way: towards the ground, by chance and away from others, along the host where they can hold on.
-// All go on side by side, each with a chance of its own that is a function of the way it has gone.
+// How tips move: along the host where they can hold on, else falling past it. All go on side by side, as far one as the
+// other.
 #include "roots_march.h"
-#include <tsuya/base/noise.h>
 
 enum
 {
     MOST_STEPS = 4000, // of a root
 };
-
-static const ty_vec3 down = {0.0f, -1.0f, 0.0f};
-
-// --- where others are ---
-
-static uint32_t cell_hash(int x, int y, int z)
-{
-    uint32_t h = ty_mix32((uint32_t)x) ^ ty_mix32((uint32_t)y * 3u + 1u) ^ ty_mix32((uint32_t)z * 5u + 2u);
-    return ty_mix32(h) % MARCH_CELLS;
-}
-
-static void trace_add(march* m, ty_vec3 p, int whose)
-{
-    if (m->trace_count == m->trace_capacity)
-    {
-        int capacity = m->trace_capacity ? 2 * m->trace_capacity : 4096;
-        m->traces = ty_grow(m->traces, (size_t)m->trace_capacity, (size_t)capacity, sizeof(trace));
-        m->trace_capacity = capacity;
-    }
-    ty_vec3 q = ty_mul(p, 1.0f / m->cell);
-    int* head = &m->heads[cell_hash((int)floorf(q.x), (int)floorf(q.y), (int)floorf(q.z))];
-    m->traces[m->trace_count] = (trace){p, whose, *head};
-    *head = m->trace_count++;
-}
-
-// Away from the roots that are near, at most of length 1.
-static ty_vec3 repulsion(const march* m, int own, ty_vec3 p)
-{
-    ty_vec3 q = ty_mul(p, 1.0f / m->cell), sum = {0.0f, 0.0f, 0.0f};
-    int low[3] = {(int)floorf(q.x) - 1, (int)floorf(q.y) - 1, (int)floorf(q.z) - 1};
-    for (int c = 0; c < 27; c++)
-    {
-        uint32_t cell = cell_hash(low[0] + c % 3, low[1] + c / 3 % 3, low[2] + c / 9);
-        for (int i = m->heads[cell]; i >= 0; i = m->traces[i].next)
-        {
-            ty_vec3 away = ty_sub(p, m->traces[i].p);
-            float d = ty_length(away);
-            if (m->traces[i].tip != own && d < m->cell && d > 0.0f)
-                sum = ty_mad(sum, away, ty_sqr(1.0f - d / m->cell) / d);
-        }
-    }
-    float length = ty_length(sum);
-    return length > 1.0f ? ty_mul(sum, 1.0f / length) : sum;
-}
 
 // --- one step ---
 
@@ -79,83 +34,38 @@ static bool tip_holds(const march* m, const tip* t, float* distance, ty_vec3* no
     *normal = ty_normalize(*normal);
     if (t->s - t->begin_s < t->free)
         return false;
-    return *distance < (def->hold + t->flat) * t->r && normal->y > -ty_sin(def->overhang);
+    float most = (def->hold + t->flat) * t->r, over = t->p.y - m->g->host->floor;
+    if (normal->y <= -ty_sin(def->overhang) && m->g->host->has_floor && over < most) // under the host, but on the floor
+    {
+        *distance = over;
+        *normal = (ty_vec3){0.0f, 1.0f, 0.0f};
+    }
+    return *distance < most && normal->y > -ty_sin(def->overhang);
 }
 
-// The next shorter length of a ladder with four rungs to the doubling, so that slightly other radii lead to the same
-// steps and the same chance.
-static float rung(float length)
+// The normal over which a tip moves on: between that where it is and that of what comes up before it, so that it
+// rounds inner corners and turns back from wedges.
+static ty_vec3 normal_ahead(const march* m, const tip* t, ty_vec3 n)
 {
-    return ty_exp(0.25f * ty_ln(2.0f) * floorf(4.0f * ty_ln(length) / ty_ln(2.0f)));
+    ty_vec3 before;
+    float distance = roots_host_value(m->g->host, ty_mad(t->p, t->t, 1.5f * t->r), &before);
+    float near = ty_clamp(1.5f - distance / t->r, 0.0f, 1.0f);
+    ty_vec3 sum = ty_mad(n, ty_normalize(before), near);
+    return ty_length(sum) > 1e-3f ? ty_normalize(sum) : n;
 }
 
 static float tip_stride(const march* m, const tip* t)
 {
-    return rung(ty_max(0.55f * t->r, 0.75f * m->g->recipe->tip));
-}
-
-// Chance as a function of the way: -1..1, much the same over about `wave` radii.
-static float chance(const march* m, const tip* t, int which)
-{
-    const ty_roots_recipe* recipe = m->g->recipe;
-    float x = (t->s - t->begin_s) / rung(1.1f * recipe->growth.wave * recipe->radius);
-    uint32_t seed = (uint32_t)ty_mix64(recipe->seed.value ^ t->key);
-    return ty_value_noise(ty_vec3_make(x, 0.5f + (float)which * 13.0f, 0.5f), seed);
-}
-
-// Horizontally away from the foot of the trunk.
-static ty_vec3 outwards(const march* m, ty_vec3 p)
-{
-    ty_vec3 away = ty_sub(p, m->foot);
-    away.y = 0.0f;
-    float length = ty_length(away);
-    return length > 1e-9f ? ty_mul(away, 1.0f / length) : (ty_vec3){0.0f, 0.0f, 0.0f};
-}
-
-// What is painted on the host, felt over some radii; and obstacles, which nothing outweighs.
-static ty_vec3 painted(const march* m, const tip* t)
-{
-    const ty_roots_growth_def* def = &m->g->recipe->growth;
-    const roots_host* host = m->g->host;
-    ty_vec3 sum = {0.0f, 0.0f, 0.0f}, g;
-    const float weights[ROOTS_MASKS] = {[ROOTS_AVOID] = -def->avoid, [ROOTS_ATTRACT] = def->attract};
-    for (int k = 0; k < ROOTS_MASKS; k++)
-    {
-        roots_host_mask(host, (roots_mask)k, t->p, &g);
-        g = ty_mul(g, 6.0f * t->r);
-        sum = ty_mad(sum, g, weights[k] / ty_max(ty_length(g), 1.0f));
-    }
-    float keep = def->clear * t->r, clear = roots_host_clear(host, t->p, &g);
-    if (clear < 3.0f * keep && ty_length_sqr(g) > 0.0f)
-        sum = ty_mad(sum, ty_normalize(g), 4.0f * ty_clamp(1.5f - 0.5f * clear / keep, 0.0f, 1.0f));
-    return sum;
-}
-
-// Out of the way of obstacles.
-static void tip_clear(const march* m, tip* t)
-{
-    ty_vec3 g;
-    float lack = m->g->recipe->growth.clear * t->r - roots_host_clear(m->g->host, t->p, &g);
-    if (lack > 0.0f && ty_length_sqr(g) > 0.0f)
-        t->p = ty_mad(t->p, ty_normalize(g), ty_min(lack, 0.5f * t->r));
+    return ty_min(m->step, ty_max(0.55f * t->r, 0.75f * m->g->recipe->tip));
 }
 
 static void tip_turn(march* m, int index, bool holds, float distance, ty_vec3 n, float step)
 {
-    const ty_roots_growth_def* def = &m->g->recipe->growth;
     tip* t = &m->tips[index];
-    ty_vec3 side = ty_normalize(ty_cross(holds ? n : t->n, t->t)), up = ty_cross(t->t, side);
-    float free = holds ? 1.0f : 0.3f, level = holds ? ty_sqr(ty_max(n.y, 0.0f)) : 0.0f;
-    ty_vec3 force = ty_mul(down, holds ? def->gravity : 1.5f * def->gravity);
-    force = ty_mad(force, side, free * def->wander * chance(m, t, 0));
-    force = ty_mad(force, up, holds ? 0.0f : free * def->wander * chance(m, t, 1));
-    force = ty_mad(force, outwards(m, t->p), def->gravity * level); // where down says nothing
-    if (holds && def->repel != 0.0f)
-        force = ty_mad(force, repulsion(m, index, t->p), def->repel);
-    force = ty_add(force, painted(m, t));
     if (holds)
-        force = growth_without(force, n);
-    ty_vec3 direction = ty_mad(t->t, force, step / (def->stiffness * t->r));
+        n = normal_ahead(m, t, n);
+    ty_vec3 force = course_force(m, index, holds, n);
+    ty_vec3 direction = ty_mad(t->t, force, step / (m->g->recipe->growth.stiffness * t->r));
     if (holds) // what comes down upon it bends before it gets there
     {
         float near = ty_clamp(1.5f - 0.5f * distance / t->r, 0.25f, 1.0f);
@@ -210,7 +120,7 @@ static void tip_descend(march* m, tip* t, float step)
     float length = ty_length(ty_sub(m->top, m->foot));
     t->along = ty_min(1.0f, t->along + step / ty_max(length, step));
     ty_vec3 middle = march_trunk(m, t->along, &axis);
-    float angle = t->turn + t->twist * t->along + 0.25f * chance(m, t, 0), sine, cosine;
+    float angle = t->turn + t->twist * t->along + 0.25f * course_chance(m, t, 0, 1, t->s, 0.5f), sine, cosine;
     ty_sincos(angle, &sine, &cosine);
     ty_vec3 out = ty_normalize(growth_without((ty_vec3){cosine, 0.0f, sine}, axis));
     float foot = ty_sqr(t->along) * t->along, wide = ty_max(def->radius - 0.5f * t->r, 0.2f * def->radius);
@@ -223,8 +133,30 @@ static void tip_descend(march* m, tip* t, float step)
     if (t->along >= 1.0f || distance < 1.6f * t->r)
     {
         t->along = 1.0f;
-        t->t = ty_normalize(ty_mad(t->t, outwards(m, t->p), 0.6f));
+        t->t = ty_normalize(ty_mad(t->t, course_outwards(m, t->p), 0.6f));
     }
+}
+
+// Notes the points of a ruler that lie on the last step, and where it ends. Marks are multiples of a power of two,
+// about half a radius apart, so that they stay where they are when radii change a little.
+static void tip_mark(const march* m, tip* t, const roots_point* now, ty_vec3 was, float step)
+{
+    float apart = ty_max(0.55f * t->r, 0.75f * m->g->recipe->tip), end = t->s - t->begin_s;
+    float mark = ty_exp(ty_ln(2.0f) * floorf(ty_ln(apart) / ty_ln(2.0f) + 1e-3f));
+    float last = t->points[t->count - 1].s - t->begin_s;
+    for (float at = mark * (floorf(last / mark + 1e-3f) + 1.0f); at <= end; at += mark)
+    {
+        roots_point point = *now;
+        point.s = t->begin_s + at;
+        point.p = ty_lerp3(now->p, was, ty_clamp((end - at) / step, 0.0f, 1.0f));
+        tip_note(t, &point);
+        last = at;
+    }
+    if (t->alive || end - last < 0.01f * mark)
+        return;
+    if (end - last < 0.5f * mark && t->count > 1)
+        t->count--;
+    tip_note(t, now);
 }
 
 static void tip_step(march* m, int index)
@@ -232,7 +164,7 @@ static void tip_step(march* m, int index)
     const ty_roots_recipe* recipe = m->g->recipe;
     tip* t = &m->tips[index];
     float step = tip_stride(m, t), distance;
-    ty_vec3 n;
+    ty_vec3 n, was = t->p;
     bool descends = t->along < 1.0f, holds = !descends && tip_holds(m, t, &distance, &n);
     if (descends)
         tip_descend(m, t, step);
@@ -240,7 +172,7 @@ static void tip_step(march* m, int index)
     {
         tip_turn(m, index, holds, holds ? distance : 0.0f, n, step);
         t->p = ty_mad(t->p, t->t, step);
-        tip_clear(m, t);
+        course_clear(m, t);
     }
     t->flat = ty_lerp(t->flat, holds ? recipe->growth.flatten : 1.0f, 0.15f);
     if (holds)
@@ -252,16 +184,16 @@ static void tip_step(march* m, int index)
     t->s += step;
     t->r *= descends ? 1.0f : tip_taper(m, t, holds);
     bool inside = !descends && t->s - t->begin_s > t->free && roots_host_value(m->g->host, t->p, NULL) < 0.0f;
-    if (inside || ty_length(ty_sub(t->p, t->points[t->count - 1].p)) < 0.1f * step)
+    if (inside || ty_length(ty_sub(t->p, was)) < 0.1f * step)
     {
         t->alive = false; // in a gap that is too narrow for it
         return;
     }
-    roots_point point = tip_point(m, t, holds);
-    tip_note(t, &point);
-    if (holds)
-        trace_add(m, t->p, index);
     t->alive = t->r > recipe->tip && t->s < t->begin_s + recipe->length && t->count < MOST_STEPS;
+    roots_point point = tip_point(m, t, holds);
+    tip_mark(m, t, &point, was, step);
+    if (holds)
+        course_pass(m, index, step);
 }
 
 // --- ends ---
@@ -309,7 +241,11 @@ march* march_create(const growth* g)
 {
     march* m = TY_ALLOC(march, 1);
     m->g = g;
+    ty_bounds b = g->host->mesh->bounds;
     m->cell = g->recipe->growth.distance * g->recipe->radius;
+    m->step = ty_max(0.2f * g->recipe->radius, 0.75f * g->recipe->tip);
+    float round = TY_PI * 0.5f * (b.high.x - b.low.x + b.high.z - b.low.z); // about the host
+    m->wide = ty_max(0.5f * round / (float)(g->recipe->count > 8 ? g->recipe->count : 8), 1.5f * g->recipe->radius);
     for (int i = 0; i < MARCH_CELLS; i++)
         m->heads[i] = -1;
     return m;
@@ -337,12 +273,14 @@ void march_add(march* m, tip t)
 
 void march_run(march* m)
 {
+    float way = 0.0f;
     for (bool alive = true; alive && !ty_cancel_requested();)
     {
         alive = false;
+        way += m->step;
         for (int i = 0; i < m->tip_count; i++)
         {
-            if (m->tips[i].alive)
+            while (m->tips[i].alive && m->tips[i].s - m->tips[i].begin_s < way)
                 tip_step(m, i);
             alive |= m->tips[i].alive;
         }

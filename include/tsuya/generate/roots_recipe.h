@@ -69,7 +69,8 @@ typedef struct ty_roots_growth_def
 {
     float gravity;   // weights of what turns a tip: down,
     float wander;    // chance,
-    float repel;     // and other main roots, away from them (below 0: towards them)
+    float repel;     // other main roots, away from them (below 0: towards them),
+    float keep;      // and its own side of the host, back to it
     float stiffness; // length in which a root turns, of its radius
     float wave;      // length in which chance changes, of the radius
     float distance;  // how far other roots are felt, of the radius
