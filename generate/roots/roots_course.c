@@ -118,7 +118,7 @@ static ty_vec3 homewards(const march* m, const tip* t)
     return ty_mul(t->across, -m->g->recipe->growth.keep * pull);
 }
 
-// What is painted on the host, felt over some radii; and obstacles, which nothing outweighs.
+// What is painted on the host, felt over some radii.
 static ty_vec3 painted(const march* m, const tip* t)
 {
     const ty_roots_growth_def* def = &m->g->recipe->growth;
@@ -131,10 +131,25 @@ static ty_vec3 painted(const march* m, const tip* t)
         g = ty_mul(g, 6.0f * t->r);
         sum = ty_mad(sum, g, weights[k] / ty_max(ty_length(g), 1.0f));
     }
-    float keep = def->clear * t->r, clear = roots_host_clear(host, t->p, &g);
-    if (clear < 3.0f * keep && ty_length_sqr(g) > 0.0f)
-        sum = ty_mad(sum, ty_normalize(g), 4.0f * ty_clamp(1.5f - 0.5f * clear / keep, 0.0f, 1.0f));
     return sum;
+}
+
+// Round obstacles: from as far as it takes to turn, a tip that heads for one goes past it on the side that it leans to,
+// or by its own hand where it would meet it head on. Nothing outweighs this where it is as near as it may be.
+static ty_vec3 past(const march* m, const tip* t, ty_vec3 n)
+{
+    const ty_roots_growth_def* def = &m->g->recipe->growth;
+    ty_vec3 away, none = {0.0f, 0.0f, 0.0f};
+    float over = roots_host_clear(m->g->host, t->p, &away) - def->clear * t->r, reach = 1.5f * def->stiffness * t->r;
+    if (over > reach || ty_length_sqr(away) <= 0.0f)
+        return none;
+    away = ty_normalize(away);
+    float near = ty_smoothstep(ty_clamp(1.0f - over / reach, 0.0f, 1.0f)), ahead = ty_max(-ty_dot(t->t, away), 0.0f);
+    ty_vec3 side = ty_cross(n, away);
+    float width = ty_length(side), lean = ty_dot(t->t, side) + (t->key & 2 ? 0.3f : -0.3f) * width;
+    float least = ty_clamp(1.0f - 2.0f * over / (def->clear * t->r), 0.0f, 1.0f);
+    ty_vec3 force = ty_mul(away, 4.0f * near * ahead + 2.0f * least);
+    return ty_mad(force, side, 4.0f * near * ahead * lean / sqrtf(lean * lean + 0.01f));
 }
 
 // Out of the way of obstacles.
@@ -163,6 +178,6 @@ ty_vec3 course_force(const march* m, int index, bool holds, ty_vec3 n)
     force = ty_mad(force, side, (t->key & 1 ? def->gravity : -def->gravity) * level * back);
     if (holds && def->repel != 0.0f)
         force = ty_mad(force, repulsion(m, index, t->p), def->repel);
-    force = ty_add(force, ty_add(homewards(m, t), painted(m, t)));
+    force = ty_add(force, ty_add(homewards(m, t), ty_add(painted(m, t), past(m, t, holds ? n : t->n))));
     return holds ? growth_without(force, n) : force;
 }

@@ -35,6 +35,7 @@ static bool wrap_grow(growth* g)
     growth_settle(g, 0, false);
     done = done && growth_link(g, &recipe->second, ROOTS_FIRST, ROOTS_SECOND);
     growth_pipe(g);
+    growth_clear(g);
     growth_settle(g, 0, true);
     return done && growth_cover(g);
 }

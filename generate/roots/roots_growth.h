@@ -54,6 +54,8 @@ void growth_settle_line(const growth* g, int line, bool exact); // one alone
 void growth_part(const growth* g, int first);
 // Radii by the pipe model, r^n = sum of those after it: what leaves takes away, what comes in gives back.
 void growth_pipe(const growth* g);
+// Bends lines out of the way of obstacles, as far as these keep clear for the radii that they have.
+void growth_clear(const growth* g);
 // When the tip passes each point.
 void growth_births(roots_network* network);
 // The direction of a line at a point, unit.
