@@ -3,6 +3,8 @@
 // other.
 #include "roots_march.h"
 
+#define WEDGE 8.0f // what leads back from wedges, as a weight
+
 enum
 {
     MOST_STEPS = 4000, // of a root
@@ -44,13 +46,15 @@ static bool tip_holds(const march* m, const tip* t, float* distance, ty_vec3* no
 }
 
 // The normal over which a tip moves on: between that where it is and that of what comes up before it, so that it
-// rounds inner corners and turns back from wedges.
-static ty_vec3 normal_ahead(const march* m, const tip* t, ty_vec3 n)
+// rounds inner corners. *out leads back from wedges, where both look at each other.
+static ty_vec3 normal_ahead(const march* m, const tip* t, ty_vec3 n, ty_vec3* out)
 {
     ty_vec3 before;
     float distance = roots_host_value(m->g->host, ty_mad(t->p, t->t, 1.5f * t->r), &before);
-    float near = ty_clamp(1.5f - distance / t->r, 0.0f, 1.0f);
-    ty_vec3 sum = ty_mad(n, ty_normalize(before), near);
+    before = ty_normalize(before);
+    float near = ty_clamp(1.5f - distance / t->r, 0.0f, 1.0f), against = ty_dot(n, before);
+    *out = ty_mul(growth_without(before, n), near * ty_max(-against, 0.0f));
+    ty_vec3 sum = ty_mad(n, before, near * ty_min(1.0f + against, 1.0f));
     return ty_length(sum) > 1e-3f ? ty_normalize(sum) : n;
 }
 
@@ -62,9 +66,10 @@ static float tip_stride(const march* m, const tip* t)
 static void tip_turn(march* m, int index, bool holds, float distance, ty_vec3 n, float step)
 {
     tip* t = &m->tips[index];
+    ty_vec3 out = {0.0f, 0.0f, 0.0f};
     if (holds)
-        n = normal_ahead(m, t, n);
-    ty_vec3 force = course_force(m, index, holds, n);
+        n = normal_ahead(m, t, n, &out);
+    ty_vec3 force = ty_mad(course_force(m, index, holds, n), out, WEDGE);
     ty_vec3 direction = ty_mad(t->t, force, step / (m->g->recipe->growth.stiffness * t->r));
     if (holds) // what comes down upon it bends before it gets there
     {
