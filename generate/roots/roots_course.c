@@ -131,7 +131,7 @@ static ty_vec3 painted(const march* m, const tip* t)
         g = ty_mul(g, 6.0f * t->r);
         sum = ty_mad(sum, g, weights[k] / ty_max(ty_length(g), 1.0f));
     }
-    return sum;
+    return ty_mul(sum, 1.0f + def->keep); // it prevails over a root's own course
 }
 
 // Round obstacles: from as far as it takes to turn, a tip that heads for one goes past it on the side that it leans to,
@@ -161,6 +161,17 @@ void course_clear(const march* m, tip* t)
         t->p = ty_mad(t->p, ty_normalize(g), ty_min(lack, 0.5f * t->r));
 }
 
+// Down through the air, plumb soon; what hangs from a root first gets clear of the host's side.
+static ty_vec3 fall(const march* m, const tip* t)
+{
+    ty_vec3 n, force = ty_mul(down, 4.0f * m->g->recipe->growth.gravity);
+    if (t->kind != ROOTS_AERIAL)
+        return force;
+    float near = ty_clamp(2.5f - 0.5f * roots_host_value(m->g->host, t->p, &n) / t->r, 0.0f, 1.0f);
+    n.y = 0.0f;
+    return ty_mad(force, n, 6.0f * m->g->recipe->growth.gravity * near);
+}
+
 // What turns a tip, over a radius times its stiffness: across n where it holds on to the host.
 ty_vec3 course_force(const march* m, int index, bool holds, ty_vec3 n)
 {
@@ -169,7 +180,7 @@ ty_vec3 course_force(const march* m, int index, bool holds, ty_vec3 n)
     ty_vec3 side = ty_cross(holds ? n : t->n, t->t), away = course_outwards(m, t->p);
     side = ty_length(side) > 1e-3f ? ty_normalize(side) : (ty_vec3){0.0f, 0.0f, 0.0f};
     float level = holds ? ty_sqr(ty_max(n.y, 0.0f)) : 0.0f, wander = (holds ? 1.0f : 0.3f) * def->wander;
-    ty_vec3 force = ty_mul(down, holds ? def->gravity : 4.0f * def->gravity); // what hangs is soon plumb
+    ty_vec3 force = holds ? ty_mul(down, def->gravity) : fall(m, t);
     force = ty_mad(force, side, wander * place_chance(m, t, t->p, 0, 1));
     if (!holds)
         force = ty_mad(force, ty_cross(t->t, side), wander * place_chance(m, t, t->p, 1, 1));

@@ -310,7 +310,7 @@ static void lines_add(cover* c)
     {
         int parent = c->buds[i].parent;
         bool begins = parent >= 0 && (c->buds[parent].point >= 0 || c->buds[parent].heir != i);
-        if (begins && c->buds[i].ahead > 1.5f * c->spacing) // stubs are left out
+        if (begins && c->buds[i].ahead > 0.7f * c->spacing) // stubs are left out
             line_add(c, i, spots);
     }
     ty_free(spots);

@@ -42,7 +42,8 @@ static bool tip_holds(const march* m, const tip* t, float* distance, ty_vec3* no
         *distance = over;
         *normal = (ty_vec3){0.0f, 1.0f, 0.0f};
     }
-    return *distance < most && normal->y > -ty_sin(def->overhang);
+    // what hangs takes hold where it can stand
+    return *distance < most && normal->y > (t->kind == ROOTS_AERIAL ? 0.7f : -ty_sin(def->overhang));
 }
 
 // The normal over which a tip moves on: between that where it is and that of what comes up before it, so that it
