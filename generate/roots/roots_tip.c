@@ -3,7 +3,7 @@
 // other.
 #include "roots_march.h"
 
-#define WEDGE 8.0f // what leads back from wedges, as a weight
+#define WEDGE 4.0f // what leads back from wedges, as a weight
 
 enum
 {
@@ -50,12 +50,12 @@ static bool tip_holds(const march* m, const tip* t, float* distance, ty_vec3* no
 // rounds inner corners. *out leads back from wedges, where both look at each other.
 static ty_vec3 normal_ahead(const march* m, const tip* t, ty_vec3 n, ty_vec3* out)
 {
-    ty_vec3 before;
-    float distance = roots_host_value(m->g->host, ty_mad(t->p, t->t, 1.5f * t->r), &before);
+    ty_vec3 before, p = ty_mad(ty_mad(t->p, t->t, 1.5f * t->r), n, 0.75f * t->r);
+    float distance = roots_host_value(m->g->host, p, &before);
     before = ty_normalize(before);
     float near = ty_clamp(1.5f - distance / t->r, 0.0f, 1.0f), against = ty_dot(n, before);
-    *out = ty_mul(growth_without(before, n), near * ty_max(-against, 0.0f));
-    ty_vec3 sum = ty_mad(n, before, near * ty_min(1.0f + against, 1.0f));
+    ty_vec3 aside = growth_without(before, n), sum = ty_mad(n, before, near * ty_min(1.0f + against, 1.0f));
+    *out = ty_mul(aside, near * ty_max(-against, 0.0f) / ty_max(ty_length(aside), 0.1f));
     return ty_length(sum) > 1e-3f ? ty_normalize(sum) : n;
 }
 
@@ -72,6 +72,7 @@ static void tip_turn(march* m, int index, bool holds, float distance, ty_vec3 n,
         n = normal_ahead(m, t, n, &out);
     ty_vec3 force = ty_mad(course_force(m, index, holds, n), out, WEDGE);
     ty_vec3 direction = ty_mad(t->t, force, step / (m->g->recipe->growth.stiffness * t->r));
+    direction = ty_mad(direction, out, -ty_min(ty_dot(direction, out), 0.0f)); // no farther in
     if (holds) // what comes down upon it bends before it gets there
     {
         float near = ty_clamp(1.5f - 0.5f * distance / t->r, 0.25f, 1.0f);
