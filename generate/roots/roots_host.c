@@ -248,10 +248,10 @@ bool roots_host_keep(const roots_host* host, float depth, ty_vec3* p)
     ty_vec3 n;
     if (roots_host_value(host, *p, NULL) > 2.0f * step - depth)
         return false;
-    for (int i = 0; i < 6; i++) // between two surfaces one move leads under the other
+    for (int i = 0; i < 24; i++) // between two surfaces one move leads under the other, in clefts again and again
     {
         float height = roots_host_exact(host, *p, depth + 2.0f * step, &n);
-        if (height >= -depth)
+        if (height >= -1.0001f * depth)
             break;
         *p = ty_mad(*p, n, -depth - height);
     }
