@@ -4,7 +4,7 @@
 #include "roots_march.h"
 #include <tsuya/base/noise.h>
 
-#define SLOPE 0.22f // of the course that a root winds along, per octave and weight of chance
+#define SLOPE 0.2f // of the course that a root winds along, per octave and weight of chance
 #define WIND 2.0f   // how far it winds, of half the way from root to root
 
 static const ty_vec3 down = {0.0f, -1.0f, 0.0f};
