@@ -109,7 +109,7 @@ static ty_status read_column(const gatherer* g, int node, const char* semantic, 
 // The places of a node's instances among all.
 static ty_status read_places(gatherer* g, int node, uint32_t count, uint32_t* places)
 {
-    int accessor = ty_gltf_instance_accessor(g->gltf, node, "_ORDER");
+    int accessor = g->is_single ? -1 : ty_gltf_instance_accessor(g->gltf, node, "_ORDER"); // among those of all nodes
     if (accessor >= 0 &&
         (ty_gltf_accessor_count(g->gltf, accessor) != count || !ty_gltf_read_integers(g->gltf, accessor, places)))
         return FAIL(g, "nodes[%d]._ORDER cannot be read", node);
