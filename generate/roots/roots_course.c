@@ -5,7 +5,7 @@
 #include <tsuya/base/noise.h>
 
 #define SLOPE 0.2f // of the course that a root winds along, per octave and weight of chance
-#define WIND 2.0f   // how far it winds, of half the way from root to root
+#define WIND 2.0f  // how far it winds, of half the way from root to root
 
 static const ty_vec3 down = {0.0f, -1.0f, 0.0f};
 

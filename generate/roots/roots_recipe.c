@@ -320,7 +320,7 @@ static int frame_count(const void* def)
 
 const ty_generator ty_roots_generator = {
     .kind = "roots",
-    .build_id = "roots 10",
+    .build_id = "roots 11",
     .product = TY_PRODUCT_MESH,
     .params = &recipe_table,
     .frame_count = frame_count,
