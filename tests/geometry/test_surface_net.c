@@ -414,7 +414,7 @@ static void corners_are_mended(void** state)
         assert_true(smallest_corner(mesh) >= CORNER);
         assert_float_equal(after, smallest_corner(mesh), 1e-3f);
         for (uint32_t v = 0; v < mesh->vertex_count; v++)
-            assert_float_equal(ty_length(mesh->positions[v]), 1.0f, held ? 1e-6f : 0.02f);
+            assert_float_equal(ty_length(mesh->positions[v]), 1.0f, (held ? 1e-6f : 0.02f));
         assert_int_equal(asked > 0, held);
         ty_mesh_destroy(mesh);
     }
