@@ -71,15 +71,33 @@ static float open_at(const roots_network* net, const roots_line* line, const roo
     return open;
 }
 
+// Of the segments of one line, from the first on.
+static void balls_make(roots_skin* skin, int first)
+{
+    float widest = 0.0f;
+    for (int i = first; i < skin->segment_count; i++)
+    {
+        const roots_segment* s = &skin->segments[i];
+        float wide = ty_max(s->ra, s->ra + s->rd), fill = ty_max(s->fill_a, s->fill_a + s->fill_d);
+        float reach = 0.5f * ty_length(s->d) + wide + fill + 1e-3f * skin->step;
+        skin->balls[i] = (roots_ball){.p = ty_mad(s->a, s->d, 0.5f), .r = reach, .line = s->line};
+        widest = ty_max(widest, wide);
+    }
+    for (int i = first; i < skin->segment_count; i++)
+        skin->balls[i].spread = skin->recipe->join * widest + skin->step;
+}
+
 static bool segments_make(roots_skin* skin)
 {
     const roots_network* net = skin->network;
     skin->segments = TY_TRY_ALLOC(roots_segment, net->point_count);
-    if (!skin->segments)
+    skin->balls = TY_TRY_ALLOC(roots_ball, net->point_count);
+    if (!skin->segments || !skin->balls)
         return false;
     for (int line = 0; line < net->line_count; line++)
     {
         resting ra, rb = resting_at(skin, &net->points[net->lines[line].first]);
+        int first = skin->segment_count;
         for (int i = 0; i + 1 < net->lines[line].count; i++)
         {
             int point = net->lines[line].first + i;
@@ -91,6 +109,7 @@ static bool segments_make(roots_skin* skin)
             s->open_a = open_at(net, &net->lines[line], a);
             s->open_d = open_at(net, &net->lines[line], b) - s->open_a;
         }
+        balls_make(skin, first);
     }
     return true;
 }
@@ -207,6 +226,7 @@ void roots_skin_destroy(roots_skin* skin)
     if (!skin)
         return;
     ty_free(skin->segments);
+    ty_free(skin->balls);
     ty_free(skin->begin);
     ty_free(skin->list);
     ty_free(skin->active);

@@ -17,12 +17,22 @@ typedef struct roots_segment
     int line, point;      // it goes from point to point + 1
 } roots_segment;
 
+// A ball about all of a segment's section, and what is asked before the segment itself is.
+typedef struct roots_ball
+{
+    ty_vec3 p;    // m
+    float r;      // m
+    float spread; // m, by how much its root may be farther than the nearest and still count, anywhere along it
+    int line;
+} roots_ball;
+
 struct roots_skin
 {
     const ty_roots_recipe* recipe;
     const roots_network* network;
     const roots_host* host; // or NULL
     roots_segment* segments;
+    roots_ball* balls; // of the segments
     int segment_count;
     ty_vec3 origin;
     float step;

@@ -108,25 +108,46 @@ static void near_prune(const roots_skin* skin, near* n)
     n->count = kept;
 }
 
-// line -1 = all.
+// A distance that is not below the least of those segments: that of one that seems near.
+static float near_bound(const roots_skin* skin, ty_vec3 p, int32_t begin, int32_t end)
+{
+    int32_t best = skin->list[begin];
+    float least = TY_FLOAT_MAX, t;
+    for (int32_t i = begin; i < end; i++)
+    {
+        const roots_ball* b = &skin->balls[skin->list[i]];
+        float power = ty_length_sqr(ty_sub(p, b->p)) - b->r * b->r;
+        best = power < least ? skin->list[i] : best;
+        least = ty_min(least, power);
+    }
+    return segment_distance(&skin->segments[best], p, &t);
+}
+
+// line -1 = all. Segments of roots that near_prune would drop are not asked.
 static void near_find(const roots_skin* skin, ty_vec3 p, int line, near* out)
 {
     int block = block_at(skin, p);
-    int32_t end = block < 0 ? 0 : skin->begin[block + 1];
+    int32_t i = block < 0 ? 0 : skin->begin[block], end = block < 0 ? 0 : skin->begin[block + 1];
+    float bound = line < 0 && i < end ? near_bound(skin, p, i, end) : TY_FLOAT_MAX;
     out->count = 0;
-    for (int32_t i = block < 0 ? 0 : skin->begin[block]; i < end;)
+    while (i < end)
     {
-        int its = skin->segments[skin->list[i]].line;
+        int its = skin->balls[skin->list[i]].line;
         int32_t best = -1;
         float least = TY_FLOAT_MAX;
-        for (; i < end && skin->segments[skin->list[i]].line == its; i++)
+        for (; i < end && skin->balls[skin->list[i]].line == its; i++)
         {
-            float t, d = line < 0 || its == line ? segment_distance(&skin->segments[skin->list[i]], p, &t) : least;
+            const roots_ball* b = &skin->balls[skin->list[i]];
+            float t, limit = ty_min(bound + b->spread, least) + b->r;
+            if ((line >= 0 && its != line) || limit < 0.0f || ty_length_sqr(ty_sub(p, b->p)) > limit * limit)
+                continue;
+            float d = segment_distance(&skin->segments[skin->list[i]], p, &t);
             best = d < least ? skin->list[i] : best;
             least = ty_min(least, d);
         }
         if (best >= 0)
             near_add(out, best, least);
+        bound = ty_min(bound, least);
     }
     near_prune(skin, out);
 }
