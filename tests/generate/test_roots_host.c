@@ -1,20 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hosts of roots: distances and sides against formulas, several objects and instances, what is painted, what is
 // refused.
-#include "../../generate/roots/roots.h"
-#include "base/cmocka_all.h"
+#include "roots_grown.h"
 #include <stdio.h>
 #include <string.h>
 #include <tsuya/geometry/mesh_file.h>
-
-static roots_host host_of(const ty_roots_recipe* recipe)
-{
-    roots_host host;
-    ty_error error = {0};
-    if (roots_host_init(recipe, NULL, NULL, &host, &error) != TY_OK)
-        fail_msg("%s", error.text);
-    return host;
-}
 
 static void refused(const ty_roots_recipe* recipe, const char* text)
 {

@@ -1,35 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where roots are led: from given places, away from what is painted, round obstacles, through the air down to the
 // ground, and to every place that they shall cover.
-#include "base/cmocka_all.h"
-#include "roots.h"
+#include "roots_grown.h"
 #include <tsuya/geometry/mesh_file.h>
 
 #define RADIUS 0.04f // m, of the host
 #define PATCH 0.012f // m
-
-typedef struct grown
-{
-    roots_host host;
-    roots_network net;
-} grown;
-
-static void grow(const ty_roots_recipe* recipe, grown* out)
-{
-    ty_error error = {0};
-    ty_status status = roots_host_init(recipe, NULL, NULL, &out->host, &error);
-    if (status == TY_OK)
-        status = roots_grow(recipe, &out->host, NULL, &out->net, &error);
-    if (status != TY_OK)
-        print_message("%s\n", error.text);
-    assert_int_equal(status, TY_OK);
-}
-
-static void drop(grown* g)
-{
-    roots_network_term(&g->net);
-    roots_host_term(&g->host);
-}
 
 static ty_roots_recipe coarse(void)
 {
@@ -83,7 +59,7 @@ static void roots_set_out_from_given_places(void** state)
     grown g;
     recipe.start.points = (ty_param_list){places, 3};
     recipe.count = 9;
-    grow(&recipe, &g);
+    grow(&recipe, NULL, &g);
     int from[3] = {0}, mains = 0;
     for (int i = 0; i < g.net.line_count; i++)
     {
@@ -110,7 +86,7 @@ static void roots_set_out_from_painted_places(void** state)
     grown g;
     recipe.start.attribute = "top";
     recipe.count = 6;
-    grow(&recipe, &g);
+    grow(&recipe, NULL, &g);
     for (int i = 0; i < g.net.line_count; i++)
         for (int k = 0; g.net.lines[i].kind == ROOTS_MAIN && k < i; k++)
         {
@@ -129,7 +105,7 @@ static float length_in_patch(const ty_roots_recipe* recipe, int* leave)
 {
     grown g;
     float sum = 0.0f;
-    grow(recipe, &g);
+    grow(recipe, NULL, &g);
     *leave = 0;
     for (int i = 0; i < g.net.line_count; i++)
     {
@@ -183,7 +159,7 @@ static passage pass(const ty_roots_recipe* recipe)
     grown g;
     passage out = {.clear = TY_FLOAT_MAX, .shortest = TY_FLOAT_MAX, .turn = 1.0f};
     int mains = 0;
-    grow(recipe, &g);
+    grow(recipe, NULL, &g);
     for (int i = 0; i < g.net.line_count; i++)
     {
         const roots_line* l = &g.net.lines[i];
@@ -251,7 +227,7 @@ static void aerial_roots_fall_plumb_and_take_hold(void** state)
     recipe.aerial.count = 6;
     recipe.length = 0.4f;
     grown g;
-    grow(&recipe, &g);
+    grow(&recipe, NULL, &g);
     assert_int_equal(g.net.requested[ROOTS_AERIAL], 6);
     assert_int_equal(g.net.grown[ROOTS_AERIAL], 6);
     for (int i = 0; i < g.net.line_count; i++)
@@ -307,10 +283,10 @@ static void fine_roots_cover_what_is_left(void** state)
     grown bare, whole;
     recipe.count = 6;
     recipe.first.spacing = 0.0f;
-    grow(&recipe, &bare);
+    grow(&recipe, NULL, &bare);
     recipe.cover.spacing = 6e-3f;
     recipe.cover.radius = 1e-3f;
-    grow(&recipe, &whole);
+    grow(&recipe, NULL, &whole);
     float reach = 1.5f * recipe.cover.spacing, before = covered(&bare, reach), after = covered(&whole, reach);
     print_message("within one and a half spacings of a root: %.3f, with %d fine roots %.3f\n", (double)before,
                   whole.net.grown[ROOTS_FINE], (double)after);

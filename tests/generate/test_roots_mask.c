@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is painted on a host by textures: the same as on the vertices of a dense mesh, on several objects and instances,
 // what is refused, and that roots keep from it.
-#include "base/cmocka_all.h"
 #include "base/own_folder.h"
-#include "roots.h"
+#include "roots_grown.h"
 #include <tsuya/geometry/aggregate.h>
 #include <tsuya/geometry/mesh_file.h>
 #include <tsuya/image/exr.h>
@@ -14,15 +13,6 @@ enum
     WIDTH = 256,
     HEIGHT = 128,
 };
-
-static roots_host host_of(const ty_roots_recipe* recipe)
-{
-    roots_host host;
-    ty_error error = {0};
-    if (roots_host_init(recipe, NULL, NULL, &host, &error) != TY_OK)
-        fail_msg("%s", error.text);
-    return host;
-}
 
 static void refused(const ty_roots_recipe* recipe, const char* text)
 {

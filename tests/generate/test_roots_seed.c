@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The thesis' method beside ours: what it does by its formulas, what fails of it on its own kinds of host, and that the
 // counts are right.
-#include "base/cmocka_all.h"
+#include "roots_grown.h"
 #include "roots_output.h"
 #include "roots_seed.h"
 #include <jansson.h>
@@ -47,29 +47,6 @@ static ty_roots_recipe recipe_for(int host)
     r.first.spacing = r.second.spacing = 8e-3f; // ours: about as many branches
     r.first.reach = r.second.reach = 0.08f;
     return r;
-}
-
-typedef struct grown
-{
-    roots_host host;
-    roots_network net;
-} grown;
-
-static void grow(const ty_roots_recipe* recipe, ty_workers* workers, grown* out)
-{
-    ty_error error = {0};
-    ty_status status = roots_host_init(recipe, NULL, workers, &out->host, &error);
-    if (status == TY_OK)
-        status = roots_grow(recipe, &out->host, workers, &out->net, &error);
-    if (status != TY_OK)
-        print_message("%s\n", error.text);
-    assert_int_equal(status, TY_OK);
-}
-
-static void drop(grown* g)
-{
-    roots_network_term(&g->net);
-    roots_host_term(&g->host);
 }
 
 // The report's figures of both methods.
