@@ -5,27 +5,6 @@
 
 // --- nodes ---
 
-void net_pad_values(const ty_net* net, int slot, float out[NET_PAD * NET_PAD * NET_PAD])
-{
-    int block[3];
-    net_block_of(net, slot, block);
-    for (int side = 0; side < 8; side++)
-    {
-        int dx = side & 1, dy = side >> 1 & 1, dz = side >> 2;
-        int32_t other = net_slot(net, block[0] + dx, block[1] + dy, block[2] + dz);
-        const float* from = other < 0 ? NULL : net->values + (size_t)other * TY_NET_NODES;
-        int nx = dx ? 1 : TY_NET_BLOCK, ny = dy ? 1 : TY_NET_BLOCK, nz = dz ? 1 : TY_NET_BLOCK;
-        for (int z = 0; z < nz; z++)
-            for (int y = 0; y < ny; y++)
-            {
-                float* row = out + ((z + dz * TY_NET_BLOCK) * NET_PAD + y + dy * TY_NET_BLOCK) * NET_PAD;
-                for (int x = 0; x < nx; x++)
-                    row[x + dx * TY_NET_BLOCK] =
-                        from ? from[(z * TY_NET_BLOCK + y) * TY_NET_BLOCK + x] : net_beyond(net, other);
-            }
-    }
-}
-
 static void blocks_fill(void* context, int64_t begin, int64_t end, int worker)
 {
     ty_net* net = context;

@@ -158,9 +158,9 @@ void roots_skin_destroy(roots_skin* skin); // NULL is allowed
 // Any thread. The distance of roots without the relief of their bark. Far from all roots it is TY_FLOAT_MAX and segment
 // -1.
 roots_sample roots_skin_at(const roots_skin* skin, ty_vec3 p);
-// The same with the direction of its gradient, unit (up where there is none), and the height of the bark over it, m, 0
-// far from all roots (NULL: not asked for).
-roots_sample roots_skin_look(const roots_skin* skin, ty_vec3 p, ty_vec3* normal, float* relief);
+// The same with the direction of its gradient, unit (up where there is none), and the height of the bark over it, m,
+// where the distance is `within` of 0 (NULL: not asked for).
+roots_sample roots_skin_look(const roots_skin* skin, ty_vec3 p, ty_vec3* normal, float within, float* relief);
 // Moves p up to the depth under the host that its root may have. True where p lies near the host.
 bool roots_skin_keep(const roots_skin* skin, roots_sample sample, ty_vec3* p);
 // What the line holds there; segment is not -1.

@@ -333,3 +333,18 @@ void roots_carry_at(const roots_carry* c, float t, ty_vec3* places)
         places[i] = has_come ? growing_at(c, i, t, places) : waiting_at(c, i, t, places);
     }
 }
+
+// The rest of the time is left to the last part to become thick in.
+#define TIP_TIME 0.7f
+
+// The tip passes at once; from then on the part thickens, ever slower, until the end: 1 - (1 - x)^2.
+float roots_growth_at(float birth, float t)
+{
+    float begin = TIP_TIME * ty_clamp(birth, 0.0f, 1.0f);
+    if (t >= 1.0f)
+        return 1.0f;
+    if (t <= begin)
+        return 0.0f;
+    float left = (1.0f - t) / (1.0f - begin);
+    return 1.0f - left * left;
+}

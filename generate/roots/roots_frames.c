@@ -4,21 +4,6 @@
 #include "roots_skin.h"
 #include <string.h>
 
-// The rest of the time is left to the last part to become thick in.
-#define TIP_TIME 0.7f
-
-// The tip passes at once; from then on the part thickens, ever slower, until the end: 1 - (1 - x)^2.
-float roots_growth_at(float birth, float t)
-{
-    float begin = TIP_TIME * ty_clamp(birth, 0.0f, 1.0f);
-    if (t >= 1.0f)
-        return 1.0f;
-    if (t <= begin)
-        return 0.0f;
-    float left = (1.0f - t) / (1.0f - begin);
-    return 1.0f - left * left;
-}
-
 // --- one topology ---
 
 // Where a vertex hangs: between a point of the centre lines and the next, and how far from there in the end.

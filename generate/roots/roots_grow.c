@@ -2,13 +2,6 @@
 // Growth of the network: main roots, what hangs from them, what links them, what covers the rest, and how thick all is.
 #include "roots_growth.h"
 
-ty_vec3 growth_tangent(const roots_network* network, const roots_line* line, int point)
-{
-    int before = point > line->first ? point - 1 : point, last = line->first + line->count - 1;
-    int after = point < last ? point + 1 : point;
-    return ty_normalize(ty_sub(network->points[after].p, network->points[before].p));
-}
-
 // Nothing grows thinner by it than roots end.
 static void radii_shape(const growth* g)
 {

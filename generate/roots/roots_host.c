@@ -12,18 +12,6 @@ static ty_status world_make(roots_host* host, ty_error* error)
     return status == TY_OK ? ty_world_commit(host->world, error) : status;
 }
 
-float host_longest(const ty_mesh* mesh)
-{
-    ty_vec3 size = ty_sub(mesh->bounds.high, mesh->bounds.low);
-    return ty_max(size.x, ty_max(size.y, size.z));
-}
-
-float host_reach(const ty_mesh* mesh)
-{
-    ty_vec3 low = mesh->bounds.low, high = mesh->bounds.high;
-    return ty_max(ty_max(-low.x, high.x), ty_max(ty_max(-low.y, high.y), ty_max(-low.z, high.z)));
-}
-
 // A root as thick as its host has nothing to hold on to.
 static ty_status radius_check(const ty_roots_recipe* recipe, const ty_mesh* mesh, ty_error* error)
 {

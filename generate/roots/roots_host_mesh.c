@@ -200,3 +200,15 @@ ty_status host_mesh_make(const ty_roots_host_def* def, ty_mesh** out, host_parts
         parts_note(parts, out, 1);
     return mesh_finish("host", status, out, error);
 }
+
+float host_longest(const ty_mesh* mesh)
+{
+    ty_vec3 size = ty_sub(mesh->bounds.high, mesh->bounds.low);
+    return ty_max(size.x, ty_max(size.y, size.z));
+}
+
+float host_reach(const ty_mesh* mesh)
+{
+    ty_vec3 low = mesh->bounds.low, high = mesh->bounds.high;
+    return ty_max(ty_max(-low.x, high.x), ty_max(ty_max(-low.y, high.y), ty_max(-low.z, high.z)));
+}

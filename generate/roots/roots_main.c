@@ -13,16 +13,6 @@ static ty_vec3 host_top(const growth* g)
 
 // --- the trunk ---
 
-// It comes down straight and leans over where it stands: a Bezier curve of second order.
-ty_vec3 march_trunk(const march* m, float along, ty_vec3* direction)
-{
-    ty_vec3 bend = {m->top.x, ty_lerp(m->top.y, m->foot.y, 0.6f), m->top.z};
-    bend = ty_lerp3(bend, ty_lerp3(m->top, m->foot, 0.6f), 0.5f);
-    ty_vec3 a = ty_lerp3(m->top, bend, along), b = ty_lerp3(bend, m->foot, along);
-    *direction = ty_normalize(ty_sub(b, a));
-    return ty_lerp3(a, b, along);
-}
-
 // The heart of the trunk, which the main roots run down along: it thins out above the host, where they part.
 static void heart_add(const march* m)
 {

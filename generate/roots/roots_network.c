@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Storage of the network of centre lines.
-#include "roots.h"
+// The network of centre lines: its storage, directions along it.
+#include "roots_growth.h"
 
 void roots_network_add_point(roots_network* network, const roots_point* point)
 {
@@ -30,4 +30,11 @@ void roots_network_term(roots_network* network)
     ty_free(network->points);
     ty_free(network->lines);
     *network = (roots_network){0};
+}
+
+ty_vec3 growth_tangent(const roots_network* network, const roots_line* line, int point)
+{
+    int before = point > line->first ? point - 1 : point, last = line->first + line->count - 1;
+    int after = point < last ? point + 1 : point;
+    return ty_normalize(ty_sub(network->points[after].p, network->points[before].p));
 }

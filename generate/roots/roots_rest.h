@@ -10,8 +10,17 @@ typedef struct resting
     bool exact;
 } resting;
 
-// Of a place over the host, with the unit normal there.
-float rest_height(const resting* on, ty_vec3 p, ty_vec3* n);
+// Of a place over the host, with the unit normal there: over the mesh itself, or by the field where that will do. Reach
+// follows from the field, so that few triangles are asked.
+static inline float rest_height(const resting* on, ty_vec3 p, ty_vec3* n)
+{
+    float value = roots_host_value(on->host, p, n);
+    if (on->exact)
+        return roots_host_exact(on->host, p, fabsf(value) + 2.0f * on->host->field.step, n);
+    *n = ty_normalize(*n);
+    return value;
+}
+
 // How much higher than by itself each point of a line lies, m, as it comes out of the roots that it joins.
 void rest_over(const resting* on, const roots_network* net, const roots_line* line, float* over);
 // Turns the ends of a line along the roots that it joins.

@@ -5,17 +5,6 @@
 
 // --- one point ---
 
-// Over the mesh itself, or by the field where that will do. reach follows from the field, so that few triangles are
-// asked.
-float rest_height(const resting* on, ty_vec3 p, ty_vec3* n)
-{
-    float value = roots_host_value(on->host, p, n);
-    if (on->exact)
-        return roots_host_exact(on->host, p, fabsf(value) + 2.0f * on->host->field.step, n);
-    *n = ty_normalize(*n);
-    return value;
-}
-
 ty_vec3 growth_out(const roots_host* host, ty_vec3 p, float height)
 {
     if (!host->has_floor || p.y > host->floor + 2.0f * height)

@@ -262,19 +262,18 @@ static ty_vec3 vertex_hold(void* context, ty_vec3 p)
 static void vertices_raise(void* context, int64_t begin, int64_t end, int worker)
 {
     const raising* r = context;
-    float most = 0.2f * r->skin->step;
+    float most = 0.2f * r->skin->step, near = 0.1f * most;
     (void)worker;
     for (int64_t v = begin; v < end; v++)
     {
         ty_vec3 *p = &r->mesh->positions[v], n;
         float relief;
-        roots_sample sample = roots_skin_look(r->skin, *p, &n, NULL);
-        for (int i = 0; i < 4 && sample.segment >= 0 && fabsf(sample.distance) > 0.1f * most; i++)
+        roots_sample sample = roots_skin_look(r->skin, *p, &n, near, &relief);
+        for (int i = 0; i < 4 && sample.segment >= 0 && fabsf(sample.distance) > near; i++)
         {
             *p = ty_mad(*p, n, -ty_clamp(sample.distance, -most, most));
-            sample = roots_skin_look(r->skin, *p, &n, NULL);
+            sample = roots_skin_look(r->skin, *p, &n, i < 3 ? near : TY_FLOAT_MAX, &relief);
         }
-        sample = roots_skin_look(r->skin, *p, &n, &relief);
         if (sample.segment < 0)
             continue;
         *p = vertex_hold((void*)r->skin, ty_mad(*p, n, relief - ty_clamp(sample.distance, -most, most)));

@@ -232,7 +232,7 @@ roots_sample roots_skin_line_at(const roots_skin* skin, ty_vec3 p, int line)
     return sample_at(skin, p, line);
 }
 
-roots_sample roots_skin_look(const roots_skin* skin, ty_vec3 p, ty_vec3* direction, float* relief)
+roots_sample roots_skin_look(const roots_skin* skin, ty_vec3 p, ty_vec3* direction, float within, float* relief)
 {
     // Four corners of a tetrahedron are enough for a gradient.
     static const float corners[4][3] = {{1, -1, -1}, {-1, -1, 1}, {-1, 1, -1}, {1, 1, 1}};
@@ -243,7 +243,7 @@ roots_sample roots_skin_look(const roots_skin* skin, ty_vec3 p, ty_vec3* directi
         *relief = 0.0f;
     if (n.count == 0)
         return (roots_sample){.distance = TY_FLOAT_MAX, .segment = -1, .line = -1};
-    gathered all = near_gather(skin, &n, p, skin->host, relief);
+    gathered all = near_gather(skin, &n, p, skin->host, false);
     ty_vec3 sum = {0.0f, 0.0f, 0.0f};
     for (int i = 0; i < 4; i++)
     {
@@ -253,8 +253,8 @@ roots_sample roots_skin_look(const roots_skin* skin, ty_vec3 p, ty_vec3* directi
     }
     if (ty_length_sqr(sum) > 0.0f)
         *direction = ty_normalize(sum);
-    if (relief)
-        *relief = all.relief;
+    if (relief && fabsf(all.sample.distance) <= within)
+        *relief = near_gather(skin, &n, p, skin->host, true).relief;
     return all.sample;
 }
 

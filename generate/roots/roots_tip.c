@@ -295,3 +295,13 @@ void march_run(march* m)
     for (int i = 0; i < m->tip_count; i++)
         tip_finish(m, &m->tips[i]);
 }
+
+// It comes down straight and leans over where it stands: a Bezier curve of second order.
+ty_vec3 march_trunk(const march* m, float along, ty_vec3* direction)
+{
+    ty_vec3 bend = {m->top.x, ty_lerp(m->top.y, m->foot.y, 0.6f), m->top.z};
+    bend = ty_lerp3(bend, ty_lerp3(m->top, m->foot, 0.6f), 0.5f);
+    ty_vec3 a = ty_lerp3(m->top, bend, along), b = ty_lerp3(bend, m->foot, along);
+    *direction = ty_normalize(ty_sub(b, a));
+    return ty_lerp3(a, b, along);
+}
